@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: standing demo test test-all test-alone quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-goods campaign-server campaign-faults campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
+.PHONY: house standing demo test test-all test-alone quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-goods campaign-server campaign-faults campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -138,6 +138,7 @@ help:
 	@echo "make format     let the formatters change the files"
 	@echo "make stub       make the type stub of the core anew"
 	@echo "make man        make the manual page anew"
+	@echo "make house      draw the map of packages and rooms in docs/house.md anew"
 	@echo "make sanitize   run the core's tests under the address and undefined-behaviour sanitizers"
 	@echo "make study      repeat section 3.3 of the TCF thesis, 10 seeds a case"
 	@echo "make standing   an hour of a standing fleet, simulated, and ten minutes in real time"
@@ -162,6 +163,9 @@ stub: $(VENV)/developed
 
 man: $(VENV)/developed
 	$(BIN)/muster man > man/muster.1
+
+house: $(VENV)/developed
+	$(BIN)/python -m tools.house
 
 sanitize: $(VENV)/developed
 	PYTHON=$(BIN)/python tools/sanitize.sh

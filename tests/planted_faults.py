@@ -24,7 +24,9 @@ class Fault:
 
 
 FAULTS = {
-    "mission": Fault("src/muster/mission/clock_times.py", "if moment < self._start:", "if moment > self._start:"),
+    "mission": Fault(
+        "src/muster/mission/values/clock_times.py", "if moment < self._start:", "if moment > self._start:"
+    ),
     "motion": Fault(
         "src/muster/motion/velocity.py",
         "return motion.slower(max(1.0, _excess",

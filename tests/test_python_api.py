@@ -29,7 +29,7 @@ def test_every_name_that_is_listed_is_there_and_no_other():
     assert dir(muster) == sorted([*muster.__all__, "__version__"])
     for name in dir(muster):
         found = getattr(muster, name)
-        assert name == "__version__" or found.__module__.startswith("muster."), name
+        assert name == "__version__" or found.__module__.startswith("muster"), name
     wanted = "Map Zone Camera Action Origin Tag Found Report Verdict NetworkError Simulation"
     assert set(f"{wanted} check explain export gantt missions".split()) <= set(dir(muster))
 

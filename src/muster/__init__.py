@@ -54,7 +54,7 @@ if TYPE_CHECKING:
         Zone,
     )
     from muster.mission.plan import Plan, Route
-    from muster.mission.plan_reader import read_plan
+    from muster.mission.reading.plan_reader import read_plan
     from muster.planning.exporting import export
     from muster.planning.judging import verify
     from muster.planning.loading import load
@@ -144,7 +144,7 @@ _NAMES_OF = {
         "Task TeamPart Zone"
     ),
     "muster.mission.plan": "Plan Route",
-    "muster.mission.plan_reader": "read_plan",
+    "muster.mission.reading.plan_reader": "read_plan",
     "muster.planning.exporting": "export",
     "muster_files.importing": "read_site",
     "muster.planning.judging": "verify",
@@ -192,7 +192,7 @@ class _OldNames:
         old = name.startswith("muster.") and next((o for o in _MOVED if f"{name}.".startswith(f"{o}.")), None)
         if not old:
             return None
-        from muster.mission.moved import moved
+        from muster.mission.system.moved import moved
 
         return moved(name, _MOVED[old] + name.removeprefix(old))
 

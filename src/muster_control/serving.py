@@ -17,7 +17,7 @@ from fastapi import FastAPI
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
 from muster.mission.errors import NetworkError, ParameterError
-from muster.mission.interrupts import TO_END
+from muster.mission.system.interrupts import TO_END
 from muster_control.settings import Settings
 
 _HEADERS_S = 20.0

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from muster.mission.platforms import data_folder
+from muster.mission.system.platforms import data_folder
 
 
 def usual_database() -> str:

@@ -13,7 +13,7 @@ from muster.execution.itinerary import Itinerary, heights_of_work, itineraries
 from muster.execution.separation import meetings
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.planning.export_formats import ExportOptions
 from muster.verification import Verdict
 

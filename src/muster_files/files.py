@@ -11,7 +11,6 @@ from muster.execution.itinerary import Itinerary, Passage, itineraries
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.sol_files import sol_text
 from muster.motion.map_world import body_of
 from muster.motion.robot_paths import RobotPaths
 from muster.planning.export_formats import ALTITUDE_MISSING, HEIGHTS, ExportOptions, Files, declares
@@ -25,9 +24,10 @@ from muster_files.file_names import file_names
 from muster_files.geographic_features import PlanFeatures, features_of
 from muster_files.geojson import geojson_text
 from muster_files.gpx import gpx_text
+from muster_files.instances.sol_files import sol_text
 from muster_files.kml import kml_text
 from muster_files.open_ways import require_open_itineraries
-from muster_files.qgc_writer import PlanFiles
+from muster_files.qgc.writer import PlanFiles
 from muster_files.spreadsheet import csv_text
 from muster_files.thinning import thinned
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from muster.execution.itinerary import Itinerary
 from muster.mission.action_keys import ACTION_KEYS
-from muster.mission.areas import whole_id
+from muster.mission.areas.task_areas import whole_id
 from muster.mission.model import Mission, Robot, Task
 from muster.verification import RouteFigures, Verdict
 from muster_files.earth import Earth, Spot, anticlockwise

@@ -1,17 +1,58 @@
-"""The readers of whole missions that `muster.load` finds: sites, and plans of ground stations. They load when used."""
+"""The readers of whole missions that `muster.load` finds: instance files, sites, plans of ground stations.
+
+They load when used.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
 
-from muster.mission.text_files import first_lines
+from muster.mission.texts.text_files import first_lines
 from muster.planning.mission_readers import MissionReader, Noted, converted_suffixes
-from muster_files.qgc_format import WAY_POINTS_HEAD
+from muster_files.qgc.plan_format import WAY_POINTS_HEAD
 from muster_files.sites.readers import is_site, unknown_file
 
 _WAY_POINTS = (".waypoints", ".wpl")
 _NO_WAY_POINTS = (".yaml", ".yml", ".csv", ".plan", ".json")
+
+
+def _is_tsplib(path: Path) -> bool:
+    if _is_no_instance(path):
+        return False
+    from muster_files.instances.instance_files import TSPLIB, instance_form
+
+    return instance_form(path) == TSPLIB
+
+
+def _read_tsplib(path: Path, salesmen: int, depot: str | None = None) -> Noted:
+    from muster_files.instances.line_fates import LineFates
+    from muster_files.instances.tsplib import read_tsplib
+
+    fates = LineFates()
+    mission = read_tsplib(path, salesmen, "1" if depot is None else depot, fates)
+    return Noted(mission, (), fates.ledger(path))
+
+
+def _has_vehicles(path: Path) -> bool:
+    if _is_no_instance(path):
+        return False
+    from muster_files.instances.instance_files import instance_form
+
+    return callable(instance_form(path))
+
+
+def _read_vehicles(path: Path, salesmen: int | None = None) -> Noted:
+    from muster_files.instances.instance_files import instance_form
+    from muster_files.instances.line_fates import LineFates
+
+    reader, fates = instance_form(path), LineFates()
+    assert callable(reader)  # `_has_vehicles`
+    return Noted(reader(path, salesmen, fates), (), fates.ledger(path))
+
+
+def _is_no_instance(path: Path) -> bool:
+    return _is_site(path) or _are_plans(path) or _are_way_points(path)
 
 
 def _is_site(path: Path) -> bool:
@@ -35,7 +76,7 @@ def _are_plans(path: Path) -> bool:
 
 
 def _read_plans(path: Path) -> Noted:
-    from muster_files.qgc_reader import read_flight_plans
+    from muster_files.qgc.reader import read_flight_plans
 
     return read_flight_plans(path)
 
@@ -48,11 +89,19 @@ def _are_way_points(path: Path) -> bool:
 
 
 def _read_way_points(path: Path) -> Noted:
-    from muster_files.wpl_reader import read_wpl
+    from muster_files.qgc.wpl_reader import read_wpl
 
     return read_wpl(path)
 
 
+TSPLIB = MissionReader(
+    takes=_is_tsplib,
+    read=_read_tsplib,
+    flags=("salesmen", "depot"),
+    needed="salesmen",
+    suffixes=(".tsp", ".atsp"),
+)
+VEHICLES = MissionReader(takes=_has_vehicles, read=_read_vehicles, flags=("salesmen",), suffixes=(".vrp", ".txt"))
 SITE = MissionReader(takes=_is_site, read=_read_site, flags=("robots", "suitability", "columns"), refusal=unknown_file)
 PLANS = MissionReader(takes=_are_plans, read=_read_plans, suffixes=(".plan",))
 WAY_POINTS = MissionReader(takes=_are_way_points, read=_read_way_points, suffixes=_WAY_POINTS)

@@ -9,7 +9,7 @@ from typing import Any
 from muster.mission.goods import Amount, by_commodity, shown_amounts
 from muster.mission.model import Mission, Station, Task
 from muster.mission.plan import teams_of
-from muster.mission.time_types import moment_after
+from muster.mission.values.time_types import moment_after
 from muster.verification import Stop as TimedStop
 from muster.verification import Verdict
 

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError, RenderingError
-from muster.mission.ranges import require_finite_positive
+from muster.mission.values.ranges import require_finite_positive
 from muster.motion.grid import Floats
 from muster_physics.library import mujoco
 from muster_physics.model import SHOW_HEIGHT, SHOW_WIDTH

@@ -14,8 +14,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from muster.mission.consistency import positions
 from muster.mission.errors import ParameterError, TransformError
+from muster.mission.mission_parts import positions
 from muster.mission.model import Event, Mission, Robot
 from muster.motion.frames import Floats
 from muster.motion.transform_tree import TransformTree

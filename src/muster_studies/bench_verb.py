@@ -12,8 +12,8 @@ import click
 
 from muster.cli.options import format_option, quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError
-from muster.mission.near_matches import did_you_mean
-from muster.mission.platforms import require_posix
+from muster.mission.system.platforms import require_posix
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 from muster_studies import study_verb
 from muster_studies.benches import BENCHES, bench_named

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
-from muster.mission.ranges import require_counts
+from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.ranges import require_counts
 from muster_studies.tables import span
 
 SEEDS, QUICK_SEEDS = 10, 2

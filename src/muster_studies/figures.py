@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.report import save_figure
 from muster_studies.effort import Effort
 

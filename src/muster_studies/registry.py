@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster_studies.allocators import ALLOCATORS_STUDY
 from muster_studies.areas import AREAS
 from muster_studies.auction_5 import AUCTION_5

@@ -20,7 +20,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.generation.uniform import uniform_mission
-from muster.mission.clock import VirtualClock
+from muster.mission.system.clock import VirtualClock
 
 both_auctions = pytest.mark.parametrize("allocator", ["auction", "market"])
 every_winner = pytest.mark.parametrize("winner", WINNERS)

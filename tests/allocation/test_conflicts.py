@@ -14,8 +14,8 @@ from tests.random_missions import random_mission
 from muster.allocation.conflicts import Conflict, Together, together
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
-from muster.mission.clock import VirtualClock
 from muster.mission.model import Lag, Mission, Robot, Rules, Task
+from muster.mission.system.clock import VirtualClock
 from muster.verification import verify
 
 

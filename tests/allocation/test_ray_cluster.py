@@ -24,7 +24,7 @@ from muster.allocation.workers import Job, Limits, Threads
 from muster.cli.main import run
 from muster.generation.uniform import large_mission
 from muster.mission.errors import MusterError, ParameterError
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster.mission.yaml_writer import yaml_text
 
 if find_spec("ray") is None:  # it is imported by the tests that need it, as that takes half a second

@@ -10,8 +10,8 @@ import pytest
 from tests.cli.yard import FOUND
 
 from muster.cli.check import _touching
-from muster.mission.clock import ProcessorClock
 from muster.mission.model import Robot
+from muster.mission.system.clock import ProcessorClock
 
 pytestmark = pytest.mark.usefixtures("folder", "processor_time")
 

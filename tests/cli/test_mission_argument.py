@@ -6,7 +6,7 @@ import pytest
 from tests.cli.yard import FOUND, MISSION
 
 from muster.library import mission_path
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 
 pytestmark = pytest.mark.usefixtures("folder")
 

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from muster.mission.plugins import declared, is_shipped
+from muster.mission.system.plugins import declared, is_shipped
 
 MODULE = '''
 import click

@@ -14,7 +14,7 @@ from tests.running import test_camera_search as looking
 
 import muster as package
 from muster.library import mission_names
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster.mission.yaml_writer import yaml_text
 
 EVENTFUL = """

@@ -12,7 +12,7 @@ from tests.cli.yard import MUSTER, comparable, table_rows
 from muster.allocation.registry import ALLOCATORS
 from muster.mission.ignorable_rules import IGNORABLE
 from muster.mission.model import OBJECTIVES
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 
 pytestmark = pytest.mark.usefixtures("folder")
 

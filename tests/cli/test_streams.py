@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from tests.cli.yard import MUSTER
 
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 
 pytestmark = pytest.mark.usefixtures("folder")
 

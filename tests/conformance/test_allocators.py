@@ -12,8 +12,8 @@ import muster
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
-from muster.mission.clock import VirtualClock
 from muster.mission.plan import REASONS
+from muster.mission.system.clock import VirtualClock
 
 every_allocator = pytest.mark.parametrize("allocator", ALLOCATORS)
 RULES = ("prerequisite", "suitability", "skill", "lock", "capacity")

@@ -14,7 +14,7 @@ from muster.cli.main import run
 from muster.library import mission_path
 from muster.mission.errors import MusterError
 from muster.mission.plan import PLAN_SCHEMA
-from muster.mission.plan_reader import plan_from
+from muster.mission.reading.plan_reader import plan_from
 from muster.planning.options import BOUNDS, OPTIONS
 from muster.planning.request import Request
 from muster_control.api.plans import PlanToMake

@@ -7,7 +7,7 @@ import pytest
 
 import muster
 from muster.mission.action_keys import ACTION_KEYS
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.motion.actions import ACTIONS
 
 TEXT = (Path(__file__).parents[2] / "docs" / "actions.md").read_text(encoding="utf-8")

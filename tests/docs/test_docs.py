@@ -12,10 +12,10 @@ from muster.allocation import search
 from muster.allocation.bounds import WHY
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import run, verbs
-from muster.mission.clock import ProcessorClock
 from muster.mission.model import Battery, Map, Mission, Robot, Rules, Station, Task, Zone
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.mission.records import specified
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.system.clock import ProcessorClock
 from muster.planning.options import DEFAULT_ALLOCATOR
 
 ROOT = Path(__file__).parents[2]

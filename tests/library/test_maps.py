@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from muster.library import mission_path
-from muster.mission.yaml_reader import read_yaml
+from muster.mission.reading.yaml_reader import read_yaml
 
 pytestmark = pytest.mark.skipif(find_spec("shapely") is None, reason="needs the extra `map`")
 

@@ -12,9 +12,9 @@ import pytest
 
 from muster.library import mission_names, mission_path, mission_summary
 from muster.mission.model import Mission, Task
-from muster.mission.tsplib import read_tsplib
-from muster.mission.yaml_reader import parse_yaml, read_yaml
+from muster.mission.reading.yaml_reader import parse_yaml, read_yaml
 from muster.mission.yaml_writer import yaml_text
+from muster_files.instances.tsplib import read_tsplib
 
 INSTANCES = {"berlin52": 52, "eil51": 51, "eil76": 76}
 COUNTS = {  # robots, tasks

@@ -12,7 +12,7 @@ import pytest
 
 from muster.library import as_corrected, as_printed, mission_names, mission_path, published, published_names
 from muster.mission.model import Mission
-from muster.mission.yaml_reader import read_yaml
+from muster.mission.reading.yaml_reader import read_yaml
 
 TABLES = {
     "auction-1": [f"5.{k}" for k in range(1, 16)],

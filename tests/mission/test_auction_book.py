@@ -7,7 +7,7 @@ import pytest
 
 import muster
 from muster.mission.auction_book import COLUMNS, MOST_BIDS_OF_AN_AWARD, Award, Book
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from tests.mission.formats import FILE
 
 from muster.mission.errors import MissingExtraError, MissionError
 from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
 
 origins = st.tuples(st.floats(-89, 89), st.floats(-180, 180), st.floats(-400, 5000))

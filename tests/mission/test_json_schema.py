@@ -14,7 +14,7 @@ from tests.mission.strategies import examples, missions
 
 from muster.library import mission_path
 from muster.mission import json_schema
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
 
 

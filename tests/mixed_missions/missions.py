@@ -4,7 +4,7 @@ import json
 from random import Random
 
 from muster import MissionError
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.yaml_reader import parse_yaml
 
 OBJECTIVES = ("total", "max", "total+max", "average", "makespan", "lateness")
 RULES = (

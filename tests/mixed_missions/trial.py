@@ -10,7 +10,7 @@ from muster.allocation.exact import solve_exactly
 from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.mission.clock import VirtualClock
+from muster.mission.system.clock import VirtualClock
 from muster.planning.explaining.explanations import left_out, one_task
 from muster.planning.judging import admits
 from muster.verification import verify

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from muster.mission.errors import MissionError
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.motion.map_world import World
 from muster.motion.unreachable_places import blocked_places, checked_world
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from muster import ParameterError, load, verify
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster.planning.export_formats import ExportOptions, altitudes_in
 from muster.planning.exporting import exported
 from muster_files.altitudes import altitudes_of

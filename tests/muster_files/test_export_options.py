@@ -3,7 +3,7 @@
 import pytest
 
 from muster import ParameterError, load, verify
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster.planning.export_formats import ExportOptions
 from muster.planning.exporting import exported
 

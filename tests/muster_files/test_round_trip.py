@@ -20,8 +20,8 @@ from muster.mission.model import Action, Camera, Map, Mission, Origin, Robot, Ru
 from muster.mission.plan import Plan, Route
 from muster.verification import verify
 from muster_files.earth import Earth
-from muster_files.qgc_reader import read_flight_plans
-from muster_files.qgc_writer import PlanFiles
+from muster_files.qgc.reader import read_flight_plans
+from muster_files.qgc.writer import PlanFiles
 
 FLYING_M = 20.0
 """How high drones of a mission in the plane fly."""

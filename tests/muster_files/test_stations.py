@@ -8,7 +8,7 @@ import pytest
 
 from muster import load, verify
 from muster.execution.itinerary import itineraries
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster.planning.export_formats import ExportOptions
 from muster.planning.exporting import exported
 from muster_files.earth import Earth
@@ -16,7 +16,7 @@ from muster_files.geographic_features import features_of
 from muster_files.geojson import geojson_text
 from muster_files.gpx import gpx_text
 from muster_files.kml import kml_text
-from muster_files.qgc_format import NAV_WAYPOINT
+from muster_files.qgc.plan_format import NAV_WAYPOINT
 
 GPX, KML = "{http://www.topografix.com/GPX/1/1}", "{http://www.opengis.net/kml/2.2}"
 BAY = """\

@@ -8,7 +8,7 @@ import pytest
 
 from muster import load, verify
 from muster.execution.itinerary import itineraries
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster_files.earth import Earth
 from muster_files.geographic_features import features_of
 from muster_files.geojson import geojson_text

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from muster.mission.errors import ParameterError, RenderingError
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.motion.frames import pose_transform
 from muster.perception.camera import intrinsics_of_mission, mount_of_mission
 from muster.perception.camera_messages import image_of, intrinsics_of, matrix_of

@@ -2,7 +2,7 @@
 
 import pytest
 
-from muster.mission.consistency import positions
+from muster.mission.mission_parts import positions
 from muster_studies.jams.scenes import DIFFERENTIAL, KINEMATICS, RADIUS_M, SCENES, SHIFT_M, SPEED_MPS
 from muster_studies.jams.space_time import SIDE_M
 from muster_studies.jams.study import JAMS, METHODS, RESERVE, SPACE_TIME, Job, outcome_of

@@ -9,7 +9,7 @@ import pytest
 from tests.muster_team.real_network import RealNetwork, why_not
 
 from muster import Mission, Robot, Task, verify
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster.mission.yaml_writer import yaml_text
 from muster_team.network.keys import new_key, write_key
 

@@ -7,8 +7,8 @@ import pytest
 import muster
 from muster.allocation.stop import Stop
 from muster.cli.main import run
-from muster.mission.clock import VirtualClock
 from muster.mission.model import Mission, Robot, Task
+from muster.mission.system.clock import VirtualClock
 from muster.planning.explaining import left_out, one_task
 from muster.planning.explaining.tables import tables_on_left_out, tables_on_task
 

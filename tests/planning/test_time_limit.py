@@ -12,8 +12,8 @@ from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_of
 from muster.allocation.stop import PATIENCE, Stop
 from muster.cli.main import run
-from muster.mission.clock import SystemClock, VirtualClock
 from muster.mission.model import Mission, Robot, Task
+from muster.mission.system.clock import SystemClock, VirtualClock
 from muster.planning.budget import Budget, Pace
 from muster.planning.request import Request
 from muster.planning.solving import answer

@@ -7,7 +7,7 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("shapely")
 
 from muster import Action, Mission, Robot, Task, verify
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster.mission.stations import Battery, Station
 from muster.report.canvas import new_axes
 from muster.report.robot_map import draw_robot_map

@@ -4,7 +4,7 @@ import importlib.util
 
 import pytest
 
-from muster.mission.installation import Part, extras
+from muster.mission.system.installation import Part, extras
 from muster.running import doctor, system_facts
 
 

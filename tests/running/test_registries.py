@@ -13,6 +13,10 @@ from muster.cli.main import run
 from muster.cli.other_recordings import OTHER_RECORDINGS
 from muster.cli.run_output_options import not_at_server, run_output_options
 from muster.mission.errors import MissingExtraError, ParameterError
+from muster.mission.plan import Plan, Route
+from muster.mission.reading.plan_reader import PLAN_READERS
+from muster.mission.reading.travel_csv import TRAVEL_TABLES
+from muster.mission.site import TravelTable
 from muster.planning import export_formats
 from muster.planning.export_formats import FORMATS, Files
 from muster.planning.mission_readers import MISSION_READERS, MissionReader, Noted, converted_suffixes
@@ -294,6 +298,32 @@ def test_a_reader_of_missions_has_flags_that_there_are():
         MissionReader(takes=callable, read=Noted, flags=("robot",))
     with pytest.raises(ParameterError, match="it is a function; expected a MissionReader"):
         MISSION_READERS.add("routes", lambda path: None)
+
+
+def test_a_plan_of_another_program_is_read(added, tmp_path, mission):
+    def read(path, text, of):
+        return Plan(routes=(Route(of.robots[0].id, tuple(text.split()[1:])),)) if text.startswith("TOUR") else None
+
+    added(PLAN_READERS, "tours", read)
+    file = tmp_path / "a.tour"
+    file.write_text("TOUR 3 1", encoding="utf-8")
+    assert muster.read_plan(file, mission).routes == (Route(mission.robots[0].id, ("3", "1")),)
+    with pytest.raises(muster.PlanError, match="a plan in JSON"):
+        muster.read_plan(file)
+
+
+def test_a_travel_table_of_another_program_is_read(added, tmp_path):
+    def read(path, robots, others):
+        places = (*robots, *others)
+        return TravelTable(places, tuple((7.0,) * len(places) for _ in places)) if path.suffix == ".sevens" else None
+
+    added(TRAVEL_TABLES, "sevens", read)
+    (tmp_path / "m.yaml").write_text(
+        "schema: muster/1\nrules: {travel: matrix}\ntravel: {car: x.sevens}\n"
+        "robots: [{id: r, type: car, position: [0, 0]}]\ntasks: [{id: a, position: [1, 1]}]\n",
+        encoding="utf-8",
+    )
+    assert muster.load(tmp_path / "m.yaml").travel_tables["car"].places == ("r", "a")
 
 
 def test_what_cannot_be_called_is_refused():

@@ -3,7 +3,7 @@
 import muster
 from muster.mission.events import Event
 from muster.mission.model import Mission, Robot, Rules, Task
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 
 
 def test_a_team_stands_around_its_place_and_ends_in_time():

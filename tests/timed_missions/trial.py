@@ -13,9 +13,9 @@ from muster.allocation.feasibility import impossible
 from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.remedies import remedies
-from muster.mission.clock import VirtualClock
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan, Route
+from muster.mission.system.clock import VirtualClock
 from muster.planning.judging import admits
 from muster.verification import verify
 from tests import trials

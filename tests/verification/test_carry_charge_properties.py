@@ -10,7 +10,7 @@ from tests.random_carry_charge import random_mission, random_plan
 from tests.verification.ticking_judge import TickingJudge
 
 from muster.mission.model import Lag
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster.verification import verify
 
 seeds = st.integers(0, 10**6)

@@ -24,7 +24,7 @@ from tests.carry_charge import (
 from tests.verification.test_goods import judged_reason
 
 from muster.mission.model import Map, Rules, TravelTable, Zone
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster.verification import verify
 
 

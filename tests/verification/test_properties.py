@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from muster.mission.ignorable_rules import IGNORABLE
 from muster.mission.model import OBJECTIVES, Mission, Robot, Rules, Task, TravelTable
 from muster.mission.plan import Plan, Route, Unassigned
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster.verification import Verdict, verify
 
 NEAR = {"rel_tol": 1e-9, "abs_tol": 1e-9}

@@ -7,7 +7,7 @@ import pytest
 
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster.mission.plan import Plan, Route, Unassigned
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster.verification import verify
 
 MISSION = Mission(

@@ -196,7 +196,7 @@ class _PageRun:
         yield Outcome(o.PARSED, "block", where)
 
     def _yaml(self, item: Item, where: str) -> Iterator[Outcome]:
-        from muster.mission.yaml_reader import parse_yaml
+        from muster.mission.reading.yaml_reader import parse_yaml
 
         given, extra = yaml.safe_load(item.text), item.marker("with")
         text = item.text

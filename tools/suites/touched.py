@@ -1,6 +1,7 @@
 """Which tests a change touches: those that executed its sources by the map, and those of a folder otherwise."""
 
 import re
+import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
@@ -132,15 +133,24 @@ def _all_importers(file: str) -> set[str]:
 
 
 def _importers(file: str) -> set[str]:
-    """Return the Python files that name the module of a file: in an import, or as the text of an entry point."""
+    """Return the Python files that name the module of a file: in an import, or by a group of entry points it is in."""
     path = Path(file)
     parts = path.with_suffix("").parts[1 if file.startswith("src/") else 0 :]
     parts = parts[:-1] if parts[-1] == "__init__" else parts
     package, module = re.escape(".".join(parts[:-1])), parts[-1]
-    whole = re.escape(".".join(parts))
+    whole = ".".join(parts)
+    groups = "".join(rf"|\"{re.escape(group)}\"" for group in _groups_of(whole))
     listed = rf"from {package} import (?:\([^)]*|[^(\n]*)\b{module}\b"
-    pattern = re.compile(rf"\b{whole}\b|^\s*{listed}", re.MULTILINE)
+    pattern = re.compile(rf"\b{re.escape(whole)}\b|^\s*{listed}{groups}", re.MULTILINE)
     return {name for name, text in _python_files().items() if name != file and pattern.search(text)}
+
+
+def _groups_of(module: str) -> Iterator[str]:
+    """Yield the groups of entry points in which a module is registered."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    for group, entries in project["entry-points"].items():
+        if any(value.partition(":")[0] == module for value in entries.values()):
+            yield group
 
 
 @cache

@@ -15,8 +15,8 @@ from muster.allocation.returned_routes import checked_routes
 from muster.allocation.stop import Stop
 from muster.mission.auction_book import Book
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, Route, RouteStop
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
 Routes = list[list[int]]

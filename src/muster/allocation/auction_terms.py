@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_within
+from muster.mission.values.ranges import require_within
 
 BIDS = ("total", "max", "average", "average-as-printed", "total+max", "makespan")
 PLACEMENTS = ("append", "insert")

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from muster.mission.arrays import Bools, Floats
+from muster.mission.values.arrays import Bools, Floats
 
 
 def bottleneck(times: Floats) -> float:

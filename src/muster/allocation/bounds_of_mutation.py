@@ -17,7 +17,7 @@ no task with dependants moves any more: the algorithm is trapped. The published 
 from __future__ import annotations
 
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 
 RECEIVER, AS_RUN = "receiver", "others-inner"
 BOUNDS = (RECEIVER, "receiver-inner", "all", "all-inner", "others", AS_RUN)

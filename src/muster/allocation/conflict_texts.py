@@ -15,8 +15,8 @@ from muster.allocation.rules.times import moments
 from muster.allocation.rules.window import closed
 from muster.allocation.subset_times import sizes_that_differ, tied_pairs, ways_of
 from muster.allocation.usage_bounds import FEW, UsageBounds
-from muster.mission.counting import counted
 from muster.mission.model import Robot, Task
+from muster.mission.texts.counting import counted
 
 
 def in_mission_order(items: Sequence[Robot] | Sequence[Task], names: Sequence[str]) -> tuple[str, ...]:

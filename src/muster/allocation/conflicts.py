@@ -19,7 +19,7 @@ from muster.allocation.subset_times import tied_pairs
 from muster.allocation.usage_bounds import UsageBounds
 from muster.allocation.witness_plans import Judge, attempt, can_do, closed, does_all, least_seconds
 from muster.allocation.work_shortfall import Shortfall, shortfalls
-from muster.mission.clock import Clock, SystemClock
+from muster.mission.system.clock import Clock, SystemClock
 
 _LEFT_OUT_TRIED = 5
 _OVERTIME_S = 0.2

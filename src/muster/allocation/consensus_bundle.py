@@ -39,7 +39,7 @@ from muster.allocation.consensus import NO_BID, NOBODY, TOPOLOGIES, Beliefs, Led
 from muster.allocation.problem import Bools, Floats, Indices, Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import MusterError, ParameterError
-from muster.mission.ranges import require_counts
+from muster.mission.values.ranges import require_counts
 
 _CROSSING = 50.0  # units of time across the mission's extent
 _PATIENCE = 10  # times the paper's bound of tasks x diameter, within which its scores agree

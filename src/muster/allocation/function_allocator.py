@@ -13,7 +13,7 @@ from muster.allocation.capabilities import ALL, NONE
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
 AllocatingFunction = Callable[..., Outcome | Sequence[Sequence[int]]]

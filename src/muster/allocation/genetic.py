@@ -21,7 +21,7 @@ from muster.allocation.capabilities import ALL
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.unit_population import UnitPopulation
-from muster.mission.ranges import require_counts, require_within
+from muster.mission.values.ranges import require_counts, require_within
 
 
 @dataclass(frozen=True, kw_only=True)

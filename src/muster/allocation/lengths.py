@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 
 
 @dataclass(frozen=True, eq=False)

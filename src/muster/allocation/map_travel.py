@@ -11,8 +11,8 @@ import numpy as np
 
 from muster.allocation.lengths import Measured
 from muster.allocation.task_geometry import TaskGeometry
-from muster.mission.arrays import Floats
 from muster.mission.model import Robot
+from muster.mission.values.arrays import Floats
 from muster.motion.actions.action import Leg
 from muster.motion.map_world import Body, body_of
 from muster.motion.path import NoPath

@@ -22,7 +22,7 @@ from muster.allocation.book_keeper import book_of
 from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.mission.ranges import require_counts, require_within
+from muster.mission.values.ranges import require_counts, require_within
 
 _TRADING = 0.9  # share of a time limit; the rest is for the annealing
 

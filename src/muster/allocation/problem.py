@@ -25,11 +25,11 @@ from muster.allocation.travel import require_room, straight_table, travel_table
 from muster.allocation.waiting import NO_WAITING, Waiting
 from muster.allocation.work_times import work_times
 from muster.mission.errors import ParameterError
-from muster.mission.garbage import collector_paused
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Station, Task
 from muster.mission.plan import tie_order
 from muster.mission.supported_features import require_supported
+from muster.mission.system.garbage import collector_paused
 from muster.mission.value_types import shown
 from muster.motion.actions import duration_of
 from muster.motion.leg_times import LegTimes

@@ -23,8 +23,8 @@ from typing import Any
 from muster.allocation.stop import Stop
 from muster.allocation.workers import Job, Offer
 from muster.mission.errors import MissingExtraError, MusterError, ParameterError
-from muster.mission.extras import needs_extra
-from muster.mission.interrupts import on_ctrl_c
+from muster.mission.system.extras import needs_extra
+from muster.mission.system.interrupts import on_ctrl_c
 
 EXPECTED = "local, auto, HOST:PORT of the head from a machine of the cluster, or ray://HOST:PORT from any other"
 

@@ -18,8 +18,8 @@ from muster import core
 from muster.allocation.allocator import Outcome, Routes, admissible_routes, finished_plan
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.mission.clock import VirtualClock
 from muster.mission.plan import Plan
+from muster.mission.system.clock import VirtualClock
 
 _LEAST_S = 1e-9  # by which waiting, or the makespan, has to become less
 

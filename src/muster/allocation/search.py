@@ -35,8 +35,8 @@ from muster.allocation.side_by_side import SideBySide, rank_of
 from muster.allocation.stop import Stop
 from muster.allocation.workers import Threads, Workers
 from muster.mission.errors import ParameterError
-from muster.mission.platforms import usable_processors
-from muster.mission.ranges import require_counts
+from muster.mission.system.platforms import usable_processors
+from muster.mission.values.ranges import require_counts
 
 _Search = core.Search | core.ScheduleSearch
 

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import ParameterError
+from muster.mission.system.clock import Clock, SystemClock
 
 DEFAULT_TIME_LIMIT_S = 5.0
 _OVERTIME, _OVERTIME_S = 0.05, 0.1  # share of a time limit, and seconds, in which what was found is put together

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats
 from muster.mission.model import Point, Robot, Task
+from muster.mission.values.arrays import Floats
 from muster.motion.actions import Impossible, TaskMotion, plan
 from muster.motion.actions.action import Leg
 

@@ -10,9 +10,9 @@ from typing import Protocol
 
 import numpy as np
 
-from muster.mission.arrays import Bools, Floats
 from muster.mission.model import Robot, Task
 from muster.mission.task_relations import tied_by
+from muster.mission.values.arrays import Bools, Floats
 
 ROUNDING = 2e-9
 """By how much a time may be above a limit, relative; a little more than the judge allows."""

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats
 from muster.mission.errors import Finding, NotSupportedError
 from muster.mission.model import Mission, Robot, Task
+from muster.mission.values.arrays import Floats
 from muster.motion.map_world import World, body_of
 from muster.motion.straight_ways import StraightWays
 

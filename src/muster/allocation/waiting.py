@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Bools, Floats
+from muster.mission.values.arrays import Bools, Floats
 
 Places = Sequence[int] | npt.NDArray[np.int64]
 

@@ -9,9 +9,9 @@ from muster.allocation import search
 from muster.allocation.allocator import Routes, scheduled
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Progress, Stop
-from muster.mission.clock import Clock
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
+from muster.mission.system.clock import Clock
 
 Judge = Callable[[Mission, Plan, tuple[str, ...]], bool]
 """Whether a plan is admissible, some rules ignored: given by the caller, as this room may not import `verification`."""

@@ -19,7 +19,7 @@ from muster.allocation.problem import Bools, Floats, Problem
 from muster.allocation.rules.battery import energy_at_start
 from muster.allocation.rules.rule import ROUNDING, listed
 from muster.allocation.usage_bounds import UsageBounds
-from muster.mission.counting import counted
+from muster.mission.texts.counting import counted
 
 _MOST_KINDS = 6  # of tasks by who can do them, up to which two kinds are looked at together
 _MOST_NAMED = 6  # robots

@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from muster.allocation.lengths import Measured
 from muster.allocation.task_geometry import TaskGeometry
-from muster.mission.arrays import Floats
 from muster.mission.model import Robot
+from muster.mission.values.arrays import Floats
 from muster.motion.leg_times import LegTimes
 
 

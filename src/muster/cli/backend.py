@@ -17,7 +17,7 @@ from click.core import ParameterSource
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.plugins import Registry, function_expected
+from muster.mission.system.plugins import Registry, function_expected
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop

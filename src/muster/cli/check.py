@@ -19,11 +19,11 @@ from muster.cli.options import (
     require_complete_option,
 )
 from muster.cli.tables import sequence
-from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError, NotSupportedError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Mission, Robot
 from muster.mission.plan import json_text
+from muster.mission.texts.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

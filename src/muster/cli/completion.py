@@ -6,7 +6,7 @@ import click
 from click.shell_completion import BashComplete, add_completion_class, get_completion_class
 
 from muster.cli.options import quiet_option
-from muster.mission.packaged_files import packaged_text
+from muster.mission.texts.packaged_files import packaged_text
 
 _SHELLS = ("bash", "zsh", "fish")
 _VARIABLE = "_MUSTER_COMPLETE"

@@ -71,7 +71,7 @@ def _entries() -> Sequence[Entry]:
 
 def _entry_of(page: str, entries: Sequence[Entry]) -> Entry:
     """The page of a name, which may be that of its file."""
-    from muster.mission.near_matches import did_you_mean
+    from muster.mission.texts.near_matches import did_you_mean
 
     names = {entry.name.casefold(): entry for entry in entries}
     wanted = Path(page).name.removesuffix(".md").removesuffix(".html").casefold()

@@ -12,7 +12,7 @@ from muster.cli.options import format_option, quiet_option
 from muster.mission.errors import MusterError
 
 if TYPE_CHECKING:
-    from muster.mission.installation import Part
+    from muster.mission.system.installation import Part
     from muster.running.doctor import ExtraHealth
     from muster.running.system_facts import Found, Processors
 
@@ -28,7 +28,7 @@ def command(server: str | None, token_file: Path | None, form: str, quiet: bool,
     Each optional package is imported, in a process of its own. Exits with 1 if one that is installed cannot be, or if
     the server does not answer; what is not installed is no fault.
     """
-    from muster.mission.installation import core_build, core_parts, extras, installed_version
+    from muster.mission.system.installation import core_build, core_parts, extras, installed_version
     from muster.running.doctor import health, import_faults
     from muster.running.system_facts import processors, programs, python, system
 
@@ -87,7 +87,7 @@ def _print(
     processors: Processors,
 ) -> None:
     from muster.cli.tables import print_table
-    from muster.mission.installation import version_line
+    from muster.mission.system.installation import version_line
 
     limit = "" if processors.group_limit is None else f", {processors.group_limit:g} allowed by the control group"
     rows = [

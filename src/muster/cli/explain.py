@@ -10,7 +10,7 @@ import click
 from muster.cli.backend import Backend, server_option
 from muster.cli.options import MissionFile, format_option, ignore_option, mission_argument, quiet_option, say_of_plan
 from muster.mission.plan import json_text
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 
 if TYPE_CHECKING:
     from muster.planning.explaining.tables import Explanation

@@ -128,7 +128,7 @@ def _default(f: Field[Any]) -> Any:
 
 
 def _help(f: Field[Any]) -> str:
-    from muster.mission.field_help import unit_of
+    from muster.mission.values.field_help import unit_of
 
     text, unit = f.metadata.get("doc", ""), unit_of(f)
     default = "" if _default(f) is None else f"  [default: {_shown(_default(f))}]"
@@ -159,7 +159,7 @@ def _given(default: object) -> str:
 
 
 def _as_data(generator: Generator) -> dict[str, Any]:
-    from muster.mission.field_help import unit_of
+    from muster.mission.values.field_help import unit_of
 
     parameters = [
         {"name": f.name, "unit": unit_of(f) or None, "default": _default(f), "meaning": f.metadata.get("doc", "")}
@@ -201,7 +201,7 @@ def _written(missions: Sequence[Mission], output: Path) -> Iterator[Path]:
     ParameterError
         before any file is written, if one is there that is another.
     """
-    from muster.mission.text_files import write_text
+    from muster.mission.texts.text_files import write_text
     from muster.mission.yaml_writer import yaml_text
 
     texts = {_file(mission, output, len(missions)): yaml_text(mission) for mission in missions}

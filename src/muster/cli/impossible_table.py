@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from muster.cli.tables import print_table, sequence
-from muster.mission.counting import counted
 from muster.mission.plan import Unassigned
+from muster.mission.texts.counting import counted
 
 _MOST_ROWS = 12  # of one reason
 

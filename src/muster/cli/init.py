@@ -11,7 +11,7 @@ import click
 
 from muster.cli.options import quiet_option
 from muster.mission.errors import ParameterError
-from muster.mission.packaged_files import packaged_text
+from muster.mission.texts.packaged_files import packaged_text
 
 
 @click.command()
@@ -52,7 +52,7 @@ def _template(path: Path) -> tuple[str, list[Path]]:
 def _shipped(shipped: str) -> tuple[str, list[Path]]:
     """The text of a shipped mission, and the files of its map, which go beside it."""
     from muster.library import mission_names, mission_path
-    from muster.mission.near_matches import did_you_mean
+    from muster.mission.texts.near_matches import did_you_mean
 
     path = mission_path(shipped)
     if path is None:

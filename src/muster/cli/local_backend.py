@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from muster.cli.whole_work import time_left_s
-from muster.mission.interrupts import ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.mission.system.interrupts import ctrl_c_halts
 
 if TYPE_CHECKING:
     from muster.allocation.stop import Progress, Stop
@@ -44,7 +44,7 @@ class LocalBackend:
         self._note = note
 
     def version(self) -> str:
-        from muster.mission.installation import installed_version
+        from muster.mission.system.installation import installed_version
 
         return installed_version()
 

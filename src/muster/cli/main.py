@@ -51,7 +51,7 @@ class _Verbs(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        from muster.mission.near_matches import did_you_mean
+        from muster.mission.texts.near_matches import did_you_mean
 
         if args and args[0] not in verbs() and not args[0].startswith("-"):
             raise click.UsageError(f"no verb '{args[0]}'{did_you_mean(args[0], verbs())}", ctx)
@@ -60,7 +60,7 @@ class _Verbs(click.Group):
 
 def verbs() -> Mapping[str, EntryPoint]:
     """The verbs of this distribution in the order of `--help`, then those of others; none of these replaces one."""
-    from muster.mission.plugins import declared, is_shipped
+    from muster.mission.system.plugins import declared, is_shipped
 
     found = declared(VERB_GROUP)
     shipped = {verb.name: verb for verb in found if is_shipped(verb)}
@@ -97,7 +97,7 @@ def _summary(found: EntryPoint) -> str:
 
 def _print_version(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
     if asked and not ctx.resilient_parsing:
-        from muster.mission.installation import version_line
+        from muster.mission.system.installation import version_line
 
         click.echo(version_line())
         ctx.exit()

@@ -9,8 +9,8 @@ from importlib.metadata import version
 import click
 
 from muster.cli.options import quiet_option
-from muster.mission.installation import DISTRIBUTION
-from muster.mission.plugins import declared, is_shipped
+from muster.mission.system.installation import DISTRIBUTION
+from muster.mission.system.plugins import declared, is_shipped
 
 _HELP = """Print the manual page, for `man`.
 

@@ -14,7 +14,7 @@ from muster.mission.errors import Finding, ParameterError
 from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
 from muster.mission.model import OBJECTIVES, Mission
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster.mission.value_types import FLAGS
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from muster.cli.options import Verb
 from muster.mission.errors import ParameterError
-from muster.mission.plugins import Registry
+from muster.mission.system.plugins import Registry
 
 if TYPE_CHECKING:
     from muster.report.record import Recording

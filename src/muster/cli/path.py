@@ -14,8 +14,8 @@ from muster.cli.outputs import require_csv, require_drawable, require_writable
 from muster.cli.smooth_path import bends_of, corners_of, require_turning_radius, smooth_path, write_trajectory
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
-from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import json_text
+from muster.mission.texts.near_matches import did_you_mean
 from muster.motion.path import NoPath, Path
 
 if TYPE_CHECKING:
@@ -278,7 +278,7 @@ def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, dri
     import numpy as np
 
     from muster.cli.tables import print_table
-    from muster.mission.counting import counted
+    from muster.mission.texts.counting import counted
 
     if isinstance(found, NoPath):
         click.echo(f"no path: {_reason(found)}")

@@ -9,8 +9,8 @@ import click
 from muster.cli.exits import DONE
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import json_text
+from muster.mission.texts.near_matches import did_you_mean
 
 
 def run(mission: Mission, told: tuple[str, ...], cell: float | None, window: int | None, seed: int, form: str) -> int:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import click
 
 from muster.cli.tables import number, print_table, sequence
-from muster.mission.counting import counted
 from muster.mission.plan import Plan, gap
+from muster.mission.texts.counting import counted
 from muster.verification import Verdict
 
 OPTIMAL = 1e-6

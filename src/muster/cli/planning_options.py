@@ -14,9 +14,9 @@ import click
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.cli.options import Verb, ignore_option, objective_option, settings_of
 from muster.mission.errors import ParameterError
-from muster.mission.interrupts import on_ctrl_c
 from muster.mission.model import Mission
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
+from muster.mission.system.interrupts import on_ctrl_c
 from muster.mission.value_types import shown
 from muster.planning.options import BOUNDS, DEFAULT_ALLOCATOR, HELP, PlanningOptions
 from muster.planning.request import Request

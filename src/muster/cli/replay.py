@@ -14,7 +14,7 @@ from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.record_output import draw_record, drawing_options
 from muster.cli.report_tables import print_report
 from muster.cli.tables import number, print_table
-from muster.mission.counting import counted
+from muster.mission.texts.counting import counted
 
 if TYPE_CHECKING:
     from muster.report.record import Recording

@@ -9,8 +9,8 @@ from typing import Any
 import click
 
 from muster.cli.tables import number, print_table
-from muster.mission.counting import counted
 from muster.mission.model import Mission, Tag
+from muster.mission.texts.counting import counted
 
 _NEAR_M = 1.0
 """What was found farther from a tag is another one."""

@@ -17,10 +17,10 @@ import click
 
 from muster.cli.options import Verb
 from muster.mission.errors import ParameterError
-from muster.mission.field_help import unit_of
-from muster.mission.order_files import OrderFile
+from muster.mission.reading.order_files import OrderFile
 from muster.mission.records import Checked, Record, Settings, key_of, specified
 from muster.mission.value_types import FLAGS, Choice, Flag, Kind, Many, Share, Table
+from muster.mission.values.field_help import unit_of
 from muster.running.request_kinds import ByRobot, Orders, Sensors
 
 _METAVARS = {"number": "X", "integer": "N", "string": "TEXT", "array": "X,Y"}

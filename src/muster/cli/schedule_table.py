@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from muster.cli.tables import number, print_table, sequence
 from muster.mission.goods import shown_amounts
 from muster.mission.model import Mission, Task
-from muster.mission.time_types import clock_text
+from muster.mission.values.time_types import clock_text
 from muster.verification import Stop, Verdict
 
 _NAMES = ("robot", "task", "stop", "with", "load after")

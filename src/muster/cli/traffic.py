@@ -12,10 +12,10 @@ from muster.cli.exits import DONE
 from muster.cli.options import Finite, MissionFile, format_option, load_plan, mission_argument, quiet_option
 from muster.cli.outputs import require_drawable, require_writable
 from muster.cli.tables import number, sequence
-from muster.mission.counting import counted
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import json_text
+from muster.mission.texts.counting import counted
 
 if TYPE_CHECKING:
     from muster.traffic.forecast import Forecast

@@ -22,9 +22,9 @@ from muster.execution.remaining_problem import RemainingMission, RemainingProble
 from muster.execution.route_ahead import RouteAhead, route_ahead, stops_of
 from muster.execution.station_calls import Call
 from muster.execution.travel import Travel
-from muster.mission.clock import VirtualClock
 from muster.mission.errors import ParameterError
 from muster.mission.plan import RouteStop, Unassigned, teams_of
+from muster.mission.system.clock import VirtualClock
 from muster.state.reasons import in_one_line, reasons_in_one_line
 
 RobotsOf = Mapping[int, frozenset[int]]

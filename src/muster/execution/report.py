@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
-from muster.mission.data_frames import data_frame
-from muster.mission.html_tables import html_line, html_table
 from muster.mission.objectives import lateness, objective_values
+from muster.mission.tables import data_frame, html_line, html_table
 from muster.state.orders import OrdersReport
 from muster.state.task_ledger import Ledger
 from muster.state.traffic_account import TrafficAccount

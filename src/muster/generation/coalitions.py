@@ -11,11 +11,11 @@ import numpy as np
 
 from muster.generation.generator import MOST_TASKS, Generator
 from muster.generation.teams import LONGEST_S, SPEED_MPS, TEAM_RULES, point
-from muster.mission.arrays import Integers
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.records import Checked, record, spec
 from muster.mission.value_types import Flag, Whole
+from muster.mission.values.arrays import Integers
 
 _TRIES = 1_000
 _ANEW = 10_000

@@ -9,13 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from random import Random
 
 from muster.generation.generator import MOST_TASKS, Generator
-from muster.mission.customer_missions import Customer, Instance, instance_mission
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Robot, Rules, Task
 from muster.mission.records import Checked, record, spec
 from muster.mission.value_types import Choice, Whole
 
@@ -97,17 +95,23 @@ def customers_mission(family: str, customers: int, seed: int, *, per_vehicle: in
     return family_mission(f"customers-{family}-{customers}-{seed}", kind, work, -(-customers // per_vehicle))
 
 
-def family_mission(name: str, kind: Kind, customers: Sequence[Customer], vehicles: int) -> Mission:
+def family_mission(name: str, kind: Kind, customers: Sequence[Task], vehicles: int) -> Mission:
     """The mission of vehicles of a family."""
-    depot = Customer(None, "0", kind.depot, window=(0, kind.day))
-    return instance_mission(
-        Instance(
-            path=Path(name), name=name, depot=depot, customers=customers, vehicles=vehicles, capacity=kind.capacity
+    robots = tuple(
+        Robot(
+            id=f"r_{k}",
+            position=kind.depot,
+            load_capacity=kind.capacity,
+            available_from_s=0.0,
+            available_until_s=kind.day,
         )
+        for k in range(vehicles)
     )
+    rules = Rules(objective="total", return_to_start=True)
+    return Mission(name=f"{name}-{vehicles}", rules=rules, robots=robots, tasks=tuple(customers))
 
 
-def _customer(name: str, place: Place, kind: Kind, draw: Random) -> Customer:
+def _customer(name: str, place: Place, kind: Kind, draw: Random) -> Task:
     """A customer who can be visited alone within its window."""
     away = math.dist(place, kind.depot)
     first, last = math.ceil(away), math.floor(kind.day - away - kind.service)
@@ -117,7 +121,7 @@ def _customer(name: str, place: Place, kind: Kind, draw: Random) -> Customer:
         middle, half = draw.randint(first, last), draw.choice(_WIDTHS) * (_WIDER if kind.long else 1) // 2
         window = max(first, middle - half), min(last, middle + half)
     load = draw.choice((10, 20, 30)) if kind.name.startswith("C") else draw.randint(1, 36)
-    return Customer(None, name, place, load, window, kind.service)
+    return Task(id=name, position=place, duration_s=kind.service, window_s=(window,), load=load)
 
 
 CUSTOMERS = Generator(

@@ -7,10 +7,10 @@ from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
 from typing import Any
 
 from muster.mission.errors import MissionError, ParameterError
-from muster.mission.keywords import require_known
 from muster.mission.model import Mission
 from muster.mission.source import IN_PYTHON
 from muster.mission.value_types import shown
+from muster.mission.values.keywords import require_known
 
 LARGEST_SEED = 2**64 - 1
 MOST_TASKS = 1_000_000

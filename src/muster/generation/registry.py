@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from muster.generation.generator import Generator
 from muster.mission.errors import ParameterError
-from muster.mission.plugins import Registry, require_own_name
+from muster.mission.system.plugins import Registry, require_own_name
 
 
 def _checked(name: str, found: object) -> Generator:

@@ -14,8 +14,7 @@ from random import Random
 
 from muster.generation.customers import KIND, Kind, Place, family_mission
 from muster.generation.generator import MOST_ROBOTS, Generator
-from muster.mission.customer_missions import NONE, Customer
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Task
 from muster.mission.records import Checked, record, spec
 from muster.mission.value_types import Whole
 
@@ -45,7 +44,7 @@ def transports_mission(family: str, transports: int, seed: int) -> Mission:
     """So many pairs of pickup and delivery, two tasks each, and as many vehicles as the plan at random has routes."""
     kind, draw = Kind(family), Random(f"transports {family} {transports} {seed}")
     left = kind.places(2 * transports, draw)
-    numbers, customers, vehicles = count(1), list[Customer](), 0
+    numbers, customers, vehicles = count(1), list[Task](), 0
     while left:
         route = _route(kind, left, draw)
         customers += _paired(kind, route, numbers, draw)
@@ -70,7 +69,7 @@ def _route(kind: Kind, left: list[Place], draw: Random) -> Sequence[_Stop]:
     return route
 
 
-def _paired(kind: Kind, route: Sequence[_Stop], numbers: count[int], draw: Random) -> list[Customer]:
+def _paired(kind: Kind, route: Sequence[_Stop], numbers: count[int], draw: Random) -> list[Task]:
     """The stops as customers; what is on board fits in a vehicle at any time."""
     order = draw.sample(range(len(route)), len(route))
     pairs = [sorted(pair) for pair in zip(order[::2], order[1::2], strict=True)]
@@ -80,19 +79,19 @@ def _paired(kind: Kind, route: Sequence[_Stop], numbers: count[int], draw: Rando
         load = max(1, min(draw.randint(*_LOADS), room))
         aboard[first:then] = [amount + load for amount in aboard[first:then]]
         pickup, delivery = str(next(numbers)), str(next(numbers))
-        found.append(_customer(kind, route[first], draw, pickup, load, delivery=delivery))
-        found.append(_customer(kind, route[then], draw, delivery, -load, pickup=pickup))
+        found.append(_customer(kind, route[first], draw, pickup, load=load))
+        found.append(_customer(kind, route[then], draw, delivery, delivers=pickup))
     return found
 
 
 def _customer(
-    kind: Kind, stop: _Stop, draw: Random, name: str, load: int, *, pickup: str = NONE, delivery: str = NONE
-) -> Customer:
+    kind: Kind, stop: _Stop, draw: Random, name: str, *, load: int | None = None, delivers: str | None = None
+) -> Task:
     wider = _WIDER if kind.long else 1
     before, after = (wider * draw.uniform(*_EARLIER_LATER) for _ in range(2))
     last = math.floor(kind.day - kind.service - math.dist(stop.place, kind.depot))
     window = math.floor(max(0.0, stop.arrival - before)), min(last, math.ceil(stop.arrival + after))
-    return Customer(None, name, stop.place, load, window, kind.service, pickup, delivery)
+    return Task(id=name, position=stop.place, duration_s=kind.service, window_s=(window,), load=load, delivers=delivers)
 
 
 TRANSPORTS = Generator(

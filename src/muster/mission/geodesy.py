@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
+from muster.mission.values.arrays import Floats
 
 
 def wgs84_to_enu(places: npt.ArrayLike, origin: npt.ArrayLike) -> Floats:

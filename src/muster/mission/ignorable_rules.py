@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
 IGNORABLE = (

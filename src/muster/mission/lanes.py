@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from muster.mission.near_matches import did_you_mean
 from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.site import Point
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import Fault, Flag, Many, Number, Path, Table, Text, Whole, shown
 
 

@@ -14,8 +14,8 @@ from muster.mission.site import Landmark, Map, Origin, Tag, TravelTable
 from muster.mission.source import IN_PYTHON, Source
 from muster.mission.stations import Station
 from muster.mission.tasks import Found, Task
-from muster.mission.time_types import Moment
 from muster.mission.value_types import Choice, Many, Number, Table, Text
+from muster.mission.values.time_types import Moment
 
 SCHEMA = "muster/1"
 

@@ -1,13 +1,14 @@
-"""All robots and all work of a mission, also those that come later, with their paths."""
+"""All robots, work and positions of a mission, also those that come later, with their paths."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
 from muster.mission.mission_data import MissionData
-from muster.mission.near_matches import did_you_mean
 from muster.mission.robots import Robot
+from muster.mission.site import Point
 from muster.mission.tasks import Found, Task, Work
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import Fault, Path, shown
 
 
@@ -47,3 +48,44 @@ def unknown_id(at: Path, name: str, known: Sequence[str], what: str) -> Fault:
 def rules_of_tags(mission: MissionData) -> list[tuple[int, Found]]:
     """What becomes of tags, by number; one without a task is on the list of faults already."""
     return [(k, found) for k, found in enumerate(mission.found) if found.becomes is not None]
+
+
+def positions(mission: MissionData) -> Iterator[tuple[Path, Point]]:
+    """Every position that a mission names, also in its events."""
+    for k, robot in enumerate(mission.robots):
+        yield ("robots", k, "position"), robot.position
+        if robot.end_position is not None:
+            yield ("robots", k, "end_position"), robot.end_position
+    for k, task in enumerate(mission.tasks):
+        yield from _places(("tasks", k), task)
+    for k, station in enumerate(mission.stations):
+        yield ("stations", k, "position"), station.position
+    for k, event in enumerate(mission.events):
+        if event.robot_joins is not None:
+            yield ("events", k, "robot_joins", "position"), event.robot_joins.position
+        if event.new_task is not None:
+            yield from _places(("events", k, "new_task"), event.new_task)
+        if event.move_task is not None:
+            yield ("events", k, "move_task", "position"), event.move_task.position
+    yield from _marks(mission)
+    for k, found in rules_of_tags(mission):
+        if found.becomes.action is not None:
+            for key, point in found.becomes.action.places.items():
+                yield ("found", k, "becomes", "action", key), point
+
+
+def _marks(mission: MissionData) -> Iterator[tuple[Path, Point]]:
+    for k, tag in enumerate(mission.tags):
+        yield ("tags", k, "position"), tag.position
+    for k, landmark in enumerate(mission.landmarks):
+        yield ("landmarks", k, "position"), landmark.position
+
+
+def _places(at: Path, task: Task) -> Iterator[tuple[Path, Point]]:
+    yield (*at, "position"), task.position
+    if task.entry is not None:
+        yield (*at, "entry"), task.entry
+    if task.exit is not None:
+        yield (*at, "exit"), task.exit
+    if task.action is not None:
+        yield from (((*at, "action", key), point) for key, point in task.action.places.items())

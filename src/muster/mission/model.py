@@ -10,14 +10,11 @@ from dataclasses import is_dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from muster.mission.area_parts import with_parts
-from muster.mission.consistency import inconsistencies
+from muster.mission.areas.parts import with_parts
+from muster.mission.consistency.all_rules import inconsistencies
 from muster.mission.cooperation import Lag, TeamPart
-from muster.mission.counting import counted
-from muster.mission.data_frames import frame_of_records
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import DelayedTask, Event, MovedTask
-from muster.mission.html_tables import html_line, html_table
 from muster.mission.lanes import Lane, Lanes
 from muster.mission.mission_data import SCHEMA, MissionData
 from muster.mission.records import findings, record, shown_if_used
@@ -25,8 +22,10 @@ from muster.mission.robots import Camera, Robot
 from muster.mission.rules import OBJECTIVES, Rules
 from muster.mission.site import Landmark, Map, Origin, Point, Tag, TravelTable, Zone
 from muster.mission.stations import Battery, Station
+from muster.mission.tables import frame_of_records, html_line, html_table
 from muster.mission.tasks import Action, Found, Task, Work
-from muster.mission.text_files import write_text
+from muster.mission.texts.counting import counted
+from muster.mission.texts.text_files import write_text
 from muster.mission.yaml_writer import flow_text, plain, with_files_from, yaml_text
 
 if TYPE_CHECKING:

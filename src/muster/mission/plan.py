@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.auction_book import Book
-from muster.mission.data_frames import data_frame
 from muster.mission.errors import CutShortError
-from muster.mission.html_tables import html_line, html_table
 from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
 from muster.mission.stations import station_sign
-from muster.mission.text_files import write_text
+from muster.mission.tables import data_frame, html_line, html_table
+from muster.mission.texts.text_files import write_text
 
 if TYPE_CHECKING:
     from pandas import DataFrame

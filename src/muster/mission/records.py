@@ -14,10 +14,8 @@ from functools import partial
 from typing import Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
 
 from muster.mission.errors import Finding, MissionError, MusterError, ParameterError
-from muster.mission.field_help import fields_text
-from muster.mission.keywords import require_known
-from muster.mission.near_matches import did_you_mean
 from muster.mission.source import IN_PYTHON, Source
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import (
     INVALID,
     OTHER_NAMES,
@@ -32,6 +30,8 @@ from muster.mission.value_types import (
     refuse,
     shown,
 )
+from muster.mission.values.field_help import fields_text
+from muster.mission.values.keywords import require_known
 
 C = TypeVar("C")
 _SPECIFIED: dict[type[Any], tuple[Field[Any], ...]] = {}

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from muster.mission.clock_times import SHIFT
-from muster.mission.energy import ENDURANCE, RANGE
 from muster.mission.goods import Amount, Amounts, by_commodity
-from muster.mission.near_matches import did_you_mean
 from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.rules import Rules
 from muster.mission.site import IN_DEGREES, Point
 from muster.mission.stations import Battery
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Position, Table, Text, Whole, shown
+from muster.mission.values.clock_times import SHIFT
+from muster.mission.values.energy import ENDURANCE, RANGE
 
 MOST_PIXELS = (1920, 1440)
 """Of a simulated camera's picture: width and height."""

@@ -6,9 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import field, replace
 from typing import Any, Self
 
-from muster.mission.action_keys import ACTION_KEYS
-from muster.mission.area_keys import WITH_AREA, coverage_faults
-from muster.mission.clock_times import DEADLINE, DUE, WINDOW
+from muster.mission.action_keys import ACTION_KEYS, WITH_AREA, coverage_faults
 from muster.mission.cooperation import Lag, Prerequisite, PrerequisiteOrId, TeamPart
 from muster.mission.errors import MissionError
 from muster.mission.goods import Amount, Amounts
@@ -16,7 +14,6 @@ from muster.mission.place_types import Corners, Place
 from muster.mission.records import Checked, Record, findings, record, spec
 from muster.mission.site import IN_DEGREES, Point
 from muster.mission.source import IN_PYTHON
-from muster.mission.time_types import Window, Windows
 from muster.mission.value_types import (
     Choice,
     Fault,
@@ -31,6 +28,8 @@ from muster.mission.value_types import (
     Whole,
     shown,
 )
+from muster.mission.values.clock_times import DEADLINE, DUE, WINDOW
+from muster.mission.values.time_types import Window, Windows
 
 
 def _is_given(value: object) -> bool:

@@ -13,7 +13,7 @@ from itertools import chain
 from numbers import Real
 from typing import Any, ClassVar, Literal, Protocol, TypeGuard, runtime_checkable
 
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 
 Path = tuple[str | int, ...]
 JsonSchema = dict[str, Any]

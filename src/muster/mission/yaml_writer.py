@@ -1,4 +1,4 @@
-"""Missions as YAML: what `yaml_reader` reads back to an equal mission. Defaults are left out."""
+"""Missions as YAML: what `reading.yaml_reader` reads back to an equal mission. Defaults are left out."""
 
 from __future__ import annotations
 

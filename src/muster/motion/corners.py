@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 
 _PIECE = math.pi / 6
 """The largest angle of one segment: its curvature differs from its arc's by less than 1e-4."""

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Bools, Floats
+from muster.mission.values.arrays import Bools, Floats
 from muster.motion.path import Path
 
 _PIECES = 32  # of a segment, in the table of arc lengths

@@ -22,10 +22,10 @@ from typing import Protocol
 
 import numpy as np
 
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
-from muster.mission.ranges import require_finite_positive
+from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.arrays import Floats
+from muster.mission.values.ranges import require_finite_positive
 from muster.motion.kinematics.kinematics import Kinematics, approach
 from muster.motion.limits import Limits
 from muster.motion.path import Path

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 
 PROFILE, THESIS, TRAJECTORY = LAWS = ("profile", "thesis", "trajectory")
 

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from muster.mission.consistency import positions
 from muster.mission.errors import MissionError, ParameterError
+from muster.mission.mission_parts import positions
 from muster.mission.model import Map, Mission, Point, Robot, Zone
 from muster.mission.records import findings
 from muster.mission.value_types import Fault

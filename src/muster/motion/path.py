@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 
 _STRAIGHT = 1e-9  # rad: what turns by less goes straight on
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats
 from muster.mission.model import Mission, Point
+from muster.mission.values.arrays import Floats
 from muster.motion.free_space import PrismSpace, Space
 from muster.motion.map_world import Body, World
 from muster.motion.path import NoPath, Path

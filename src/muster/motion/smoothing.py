@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Bools, Floats
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Bools, Floats
 from muster.motion.curve import Curve
 from muster.motion.path import Path
 from muster.motion.rounding import Rounding

@@ -13,8 +13,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.motion.curve import Curve
 from muster.motion.frames import wrapped
 from muster.motion.limits import BENDS_SHARE, Limits

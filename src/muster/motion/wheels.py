@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 
 TRACK_RADII = 0.287 / 0.3
 """The distance between the wheels in radii of the robot: the Wafflebot's of [tcf-thesis] at its inflated radius."""

@@ -18,8 +18,8 @@ from collections import deque
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.perception.estimates import NO_TAG, RawEstimates
 from muster.perception.optional_parts import require_physics
 

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.perception.apriltag import new_detector
 from muster.perception.camera import Intrinsics
 from muster.perception.images import Image, grey

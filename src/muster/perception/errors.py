@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 
-from muster.mission.ranges import require_finite_not_negative
+from muster.mission.values.ranges import require_finite_not_negative
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats, Integers
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats, Integers
 
 NO_TAG = -1
 """In place of a tag's id, where none was decoded."""

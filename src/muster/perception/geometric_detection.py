@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 from muster.motion.frames import moved
 from muster.perception.camera import View
 from muster.perception.detection import Sighting, Sightings

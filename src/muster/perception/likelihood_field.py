@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_finite_positive
+from muster.mission.values.ranges import require_finite_positive
 from muster.motion.grid import Grid
 from muster.motion.maps.distance_field import distance_field
 from muster.perception.kalman import Floats

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_finite_positive
+from muster.mission.values.ranges import require_finite_positive
 from muster.motion.frames import wrapped
 from muster.perception.kalman import Estimate, Floats
 from muster.perception.laser import require_scan

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_counts, require_finite_positive
+from muster.mission.values.ranges import require_counts, require_finite_positive
 from muster.perception.kalman import Floats
 from muster.perception.laser import points_of, require_scan
 from muster.perception.shapes import Shape, shape_of

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.perception.clusters import LONE, Labels
 from muster.perception.estimates import NO_TAG, RawEstimates
 

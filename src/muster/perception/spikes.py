@@ -19,7 +19,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_finite_positive
+from muster.mission.values.ranges import require_finite_positive
 from muster.perception.kalman import Floats
 from muster.perception.laser import require_scan
 

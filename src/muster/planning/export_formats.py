@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, TypedDict
 
 from muster.mission.errors import ParameterError
-from muster.mission.plugins import Registry, function_expected
+from muster.mission.system.plugins import Registry, function_expected
 from muster.mission.value_types import shown
 
 FIRMWARES = ("px4", "ardupilot")

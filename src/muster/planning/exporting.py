@@ -7,11 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
-from muster.mission.keywords import require_known
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_of
-from muster.mission.text_files import write_bytes
+from muster.mission.reading.plan_reader import plan_of
+from muster.mission.texts.text_files import write_bytes
+from muster.mission.values.keywords import require_known
 from muster.planning.export_formats import (
     FORMATS,
     ExportKeywords,

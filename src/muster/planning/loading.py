@@ -8,10 +8,9 @@ from typing import Any
 
 from muster.library import mission_names, mission_path
 from muster.mission.errors import Finding, MissionError, ParameterError
-from muster.mission.line_fates import LineFates
 from muster.mission.model import Mission
-from muster.mission.near_matches import did_you_mean, near_file
-from muster.mission.swapped import PLAN_AS_MISSION
+from muster.mission.reading.mistaken_files import PLAN_AS_MISSION
+from muster.mission.texts.near_matches import did_you_mean, near_file
 from muster.mission.yaml_writer import YAML_SUFFIXES
 from muster.planning.mission_readers import Noted, converted_suffixes, reader_of, refusal_of
 
@@ -74,46 +73,29 @@ def load_noted(
         return _task_list(path, path_or_name, **given)
     is_yaml = path.suffix.lower() in YAML_SUFFIXES and path.is_file()
     if not is_yaml and (reader := reader_of(path)) is not None:
-        _check_flags(path_or_name, reader.flags, given)
+        kind = next(iter(reader.suffixes), "")
+        _check_flags(path_or_name, reader.flags, given, needed=reader.needed, kind=kind)
         return reader.read(path, **{name: given[name] for name in reader.flags})
-    return _instance(path, path_or_name, **given) or _own(path, path_or_name, **given)
+    return _own(path, path_or_name, **given)
 
 
 def _is_task_list(path: Path, robots: str | Path | None) -> bool:
-    from muster.mission.thesis_csv import is_task_list
+    from muster.mission.reading.thesis_csv import is_task_list
 
     return is_task_list(path, None if robots is None else Path(robots))
 
 
 def _task_list(path: Path, named: str | Path, **given: Any) -> Noted:
-    from muster.mission.thesis_csv import read_csv
+    from muster.mission.reading.thesis_csv import read_csv
 
     _check_flags(named, ("robots", "suitability"), given, needed="robots", kind=".csv")
     suitability = given["suitability"]
     return Noted(read_csv(path, Path(given["robots"]), None if suitability is None else Path(suitability)))
 
 
-def _instance(path: Path, named: str | Path, **given: Any) -> Noted | None:
-    """Return the mission of an instance file; None for another file."""
-    from muster.mission.instance_files import TSPLIB, instance_form
-
-    form, fates = instance_form(path), LineFates()
-    if callable(form):
-        _check_flags(named, ("salesmen",), given)
-        return Noted(form(path, given["salesmen"], fates), (), fates.ledger(path))
-    if form != TSPLIB:
-        return None
-    from muster.mission.tsplib import read_tsplib
-
-    _check_flags(named, ("salesmen", "depot"), given, needed="salesmen", kind=".tsp")
-    depot = given["depot"]
-    mission = read_tsplib(path, given["salesmen"], "1" if depot is None else depot, fates)
-    return Noted(mission, (), fates.ledger(path))
-
-
 def _own(path: Path, named: str | Path, **given: Any) -> Noted:
     """Return the mission of a file in Muster's own form, YAML or JSON."""
-    from muster.mission.yaml_reader import read_yaml
+    from muster.mission.reading.yaml_reader import read_yaml
 
     _check_flags(named, (), given)
     suffix = path.suffix.lower()

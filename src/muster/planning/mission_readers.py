@@ -9,12 +9,10 @@ from pathlib import Path
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.import_ledger import Ledger, summary_lines
 from muster.mission.model import Mission
-from muster.mission.plugins import Registry
+from muster.mission.system.plugins import Registry
 
 FLAGS = ("robots", "suitability", "salesmen", "depot", "columns")
 """The parameters of `load` that go with some kinds of files."""
-INSTANCES = (".tsp", ".atsp", ".vrp", ".txt")
-"""The suffixes of instance files, which Muster reads itself."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +46,8 @@ class MissionReader:
         `MissionError` for a file that it cannot read.
     flags : collection of str
         Which of `FLAGS` go with such a mission.
+    needed : str
+        That of `flags` without which such a mission cannot be read; empty if all may be missing.
     suffixes : tuple of str
         Suffixes that such files alone have, with the dot.
     refusal : callable, optional
@@ -57,6 +57,7 @@ class MissionReader:
     takes: Callable[[Path], bool]
     read: Callable[..., Noted]
     flags: Collection[str] = ()
+    needed: str = ""
     suffixes: tuple[str, ...] = ()
     refusal: Callable[[Path], MissionError | None] = lambda _: None
 
@@ -86,6 +87,5 @@ def refusal_of(path: Path) -> MissionError | None:
 
 
 def converted_suffixes() -> tuple[str, ...]:
-    """Return the suffixes of missions of other programs, those of instance files first."""
-    readers = MISSION_READERS.usable().values()
-    return (*INSTANCES, *(suffix for reader in readers for suffix in reader.suffixes))
+    """Return the suffixes of missions of other programs."""
+    return tuple(suffix for reader in MISSION_READERS.usable().values() for suffix in reader.suffixes)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
 from muster.mission.model import OBJECTIVES
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 from muster.traffic.names import DEFAULT, TRAFFIC
 

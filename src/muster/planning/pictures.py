@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster.planning.judging import verify
 
 if TYPE_CHECKING:

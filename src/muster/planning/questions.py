@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, overload
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster.planning.request import require_mission
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import Any
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_from
+from muster.mission.reading.plan_reader import plan_from
 from muster.mission.value_types import shown
 from muster.planning.options import PlanningOptions, options_from
 

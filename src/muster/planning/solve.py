@@ -6,10 +6,10 @@ import inspect
 from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
-from muster.mission.keywords import require_known
 from muster.mission.model import Mission
-from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan
+from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.keywords import require_known
 from muster.planning.custom_objective import best_by
 from muster.planning.options import DEFAULT_ALLOCATOR
 from muster.planning.request import Request

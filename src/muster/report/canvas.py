@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from muster.mission.extras import needs_extra
 from muster.mission.plan import Plan
+from muster.mission.system.extras import needs_extra
 from muster.motion.grid import Floats
 from muster.report.fonts import Names
 from muster.report.styles import ALARM, FRAME, GRID, QUIET_TEXT, TEXT

@@ -12,8 +12,8 @@ from types import TracebackType
 from typing import Any, Self
 
 from muster.mission.errors import NetworkError
-from muster.mission.extras import needs_extra
 from muster.mission.model import Mission
+from muster.mission.system.extras import needs_extra
 from muster.report.record import json_messages, scene
 from muster.report.record.publisher import Publisher
 from muster.report.record.schemas import SCHEMAS, TOPICS

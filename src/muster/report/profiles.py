@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 from muster.report.canvas import new_axes, quiet_frame
 from muster.report.styles import DASHED, PALETTE, QUIET_TEXT
 

@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from muster.mission.model import Task
-from muster.mission.time_types import clock_text
+from muster.mission.values.time_types import clock_text
 from muster.report.styles import ALARM, QUIET_TEXT, TEXT
 from muster.report.time_chart import WORK_HEIGHT, Row
 from muster.report.time_marks import DEADLINE, DUE, LATE, TEAM, WINDOW, TimeMark, time_marks

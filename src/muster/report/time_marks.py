@@ -13,7 +13,7 @@ from itertools import pairwise
 from typing import Any
 
 from muster.mission.model import Task
-from muster.mission.time_types import clock_text
+from muster.mission.values.time_types import clock_text
 from muster.report.time_chart import Row, Work
 
 WINDOW, DEADLINE, DUE, LATE, TEAM = "window", "deadline", "due", "late", "team"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 from muster.report.canvas import new_figure, quiet_frame
 from muster.report.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
 

@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from hashlib import sha256
 
 from muster.mission.errors import MusterError, ParameterError
-from muster.mission.platforms import data_folder
+from muster.mission.system.platforms import data_folder
 
 _POLL_S = 0.1
 

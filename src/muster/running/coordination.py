@@ -9,8 +9,8 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from muster.mission.errors import ParameterError
-from muster.mission.plugins import Registry
 from muster.mission.records import Settings, record
+from muster.mission.system.plugins import Registry
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report

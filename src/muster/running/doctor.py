@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import packages_distributions
 
-from muster.mission.installation import Part
-from muster.mission.platforms import usable_processors
+from muster.mission.system.installation import Part
+from muster.mission.system.platforms import usable_processors
 
 _LONGEST_IMPORT_S = 120.0
 
@@ -39,7 +39,7 @@ class ExtraHealth:
 
 
 def health(extras: Mapping[str, tuple[Part, ...]]) -> tuple[ExtraHealth, ...]:
-    """The state of each extra; `extras` as `muster.mission.installation.extras` gives them."""
+    """The state of each extra; `extras` as `muster.mission.system.installation.extras` gives them."""
     faults = import_faults({p.name for parts in extras.values() for p in parts if p.version is not None})
     return tuple(
         ExtraHealth(name=name, parts=parts, faults={p.name: faults[p.name] for p in parts if p.name in faults})

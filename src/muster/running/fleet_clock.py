@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from muster.execution.fleet import Fleet, has_simulated_time, is_paused
-from muster.mission.clock import Clock, VirtualClock, WallClock
 from muster.mission.model import Event, Mission
+from muster.mission.system.clock import Clock, VirtualClock, WallClock
 from muster.motion.port import RobotPort, Telemetry, TranslatedPort
 from muster.running.wall_time import MissionStart
 

@@ -7,10 +7,10 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError, PluginError
-from muster.mission.keywords import require_known
-from muster.mission.plugins import Registry, function_expected
 from muster.mission.records import Record, Settings, key_of, specified
+from muster.mission.system.plugins import Registry, function_expected
 from muster.mission.value_types import Fault, shown
+from muster.mission.values.keywords import require_known
 
 if TYPE_CHECKING:
     from muster.execution.fleet import Fleet

@@ -22,10 +22,10 @@ from muster.execution import (
     way_of,
 )
 from muster.execution.fleet import Fleet, has_simulated_time, is_paused, reason_of
-from muster.mission.clock import Clock
 from muster.mission.errors import NetworkError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.mission.system.clock import Clock
 from muster.motion.port import RobotPort
 from muster.motion.robot_paths import RobotPaths
 from muster.running.fleet_clock import FleetWithMissionClock, clock_of, start_of

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from muster.execution import ExecutionEvent, Recorder, Standing
-    from muster.mission.clock import Clock
+    from muster.mission.system.clock import Clock
     from muster.running.camera_search import OnLook
     from muster.running.run_outputs import BegunOutput, OnWorld, WorldRecorder
     from muster.simulation import SimulatedWorld

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from muster.mission.errors import ParameterError
 from muster.mission.events import Event
 from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
-from muster.mission.order_files import OF_TASKS, OrderFile
+from muster.mission.reading.order_files import OF_TASKS, OrderFile
 from muster.mission.records import Record
 from muster.mission.value_types import Fault, JsonSchema, Path, Table, is_list, refuse
 from muster.planning.options import PlanningOptions, options_from

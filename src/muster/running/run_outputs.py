@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from muster.execution.record import Recorder
 from muster.mission.errors import ParameterError
-from muster.mission.plugins import Registry
+from muster.mission.system.plugins import Registry
 
 if TYPE_CHECKING:
     from muster.mission.model import Mission

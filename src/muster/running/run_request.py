@@ -13,9 +13,9 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Self
 
 from muster.mission.errors import ParameterError
-from muster.mission.keywords import require_known
 from muster.mission.records import Record, Settings, record, spec, specified
 from muster.mission.value_types import Choice, Fault, Flag, Number, Path, Whole, shown
+from muster.mission.values.keywords import require_known
 from muster.mission.yaml_writer import plain
 from muster.motion.avoidance_names import AUTO, AVOIDANCE
 from muster.motion.laws import LAWS, PROFILE

@@ -15,7 +15,7 @@ import numpy as np
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.motion.port import RobotPort, Telemetry, Waypoint

@@ -12,7 +12,7 @@ from ctypes.util import find_library
 from dataclasses import dataclass
 from pathlib import Path
 
-from muster.mission.platforms import usable_processors
+from muster.mission.system.platforms import usable_processors
 
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 

@@ -11,10 +11,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 
-from muster.mission.clock import Clock, WallClock
-from muster.mission.counting import counted
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot, Task
+from muster.mission.system.clock import Clock, WallClock
+from muster.mission.texts.counting import counted
 
 STARTS = ("given", "now")
 """When a mission starts: as its `starts_at` says, or when the run begins, with all its times shifted."""

@@ -7,7 +7,7 @@ from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.plugins import Registry, function_expected
+from muster.mission.system.plugins import Registry, function_expected
 
 if TYPE_CHECKING:
     from muster.mission.model import Mission

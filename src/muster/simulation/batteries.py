@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 
 ALL = "all"
 """Stands for every robot in the place of an id."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
-from muster.mission.ranges import require_counts
+from muster.mission.values.ranges import require_counts
 from muster.motion.grid import Floats
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.world import SimulatedWorld

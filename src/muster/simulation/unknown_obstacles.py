@@ -17,8 +17,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from muster.mission.arrays import Floats
-from muster.mission.ranges import require_finite_positive
+from muster.mission.values.arrays import Floats
+from muster.mission.values.ranges import require_finite_positive
 from muster.motion.map_world import Body, World
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.dubins_words import Pose, words

@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from muster import core
-from muster.mission.consistency import positions
 from muster.mission.errors import ParameterError
+from muster.mission.mission_parts import positions
 from muster.mission.model import Mission, Robot
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.motion.avoidance_names import AUTO, method_for
 from muster.motion.frames import rotation
 from muster.motion.grid import Floats

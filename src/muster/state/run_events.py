@@ -7,7 +7,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Any, Self
 
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_from
+from muster.mission.reading.plan_reader import plan_from
 from muster.state import words
 from muster.state.event import ExecutionEvent, happens
 from muster.state.reasons import reasons_in_one_line

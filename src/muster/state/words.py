@@ -10,8 +10,8 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from muster.mission.counting import counted
 from muster.mission.stations import station_sign
+from muster.mission.texts.counting import counted
 from muster.state.reasons import was_cancelled
 
 Data = Mapping[str, Any]

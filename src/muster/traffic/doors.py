@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.mission.arrays import Bools
 from muster.mission.lanes import Lanes
 from muster.mission.model import Mission
+from muster.mission.values.arrays import Bools
 from muster.motion.grid import Floats
 from muster.motion.map_world import Body, World
 from muster.traffic.lane_sections import ON_LANE_M

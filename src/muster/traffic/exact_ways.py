@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from muster.mission.arrays import Bools, Floats, Indices
+from muster.mission.values.arrays import Bools, Floats, Indices
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.path import Path
 from muster.motion.paths import PathFinder

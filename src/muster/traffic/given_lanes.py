@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from muster import core
-from muster.mission.arrays import Floats
 from muster.mission.lanes import Lane, Lanes
+from muster.mission.values.arrays import Floats
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.paths import PathFinder
 from muster.traffic.exact_ways import Network, with_place

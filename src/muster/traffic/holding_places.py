@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from muster.mission.arrays import Bools, Floats, Indices
+from muster.mission.values.arrays import Bools, Floats, Indices
 
 _AROUND = 2.0
 """Others get past where they do so within so many times the length of the edges there, and the reach of a robot."""

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from muster.mission.arrays import Bools, Indices
+from muster.mission.values.arrays import Bools, Indices
 from muster.traffic.joint_positions import JointPositions, most_moves
 from muster.traffic.roadmap import Roadmap
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from muster.mission.arrays import Bools
+from muster.mission.values.arrays import Bools
 
 
 def faults(

@@ -16,10 +16,10 @@ from typing import Literal
 import numpy as np
 
 from muster import core
-from muster.mission.arrays import Bools, Indices
-from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_counts
+from muster.mission.system.clock import Clock, SystemClock
+from muster.mission.values.arrays import Bools, Indices
+from muster.mission.values.ranges import require_counts
 
 _AT_ONCE = 100
 """Expansions between two looks at the clock."""

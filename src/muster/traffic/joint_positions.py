@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from muster.mission.arrays import Bools, Indices
+from muster.mission.values.arrays import Bools, Indices
 from muster.traffic.roadmap import Roadmap
 
 

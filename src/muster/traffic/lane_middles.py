@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 

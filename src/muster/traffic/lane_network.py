@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from muster import core
-from muster.mission.arrays import Bools, Floats, Indices
+from muster.mission.values.arrays import Bools, Floats, Indices
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.maps.distance_field import distance_field

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.mission.arrays import Bools, Floats
+from muster.mission.values.arrays import Bools, Floats
 
 _SHIFTS = 8
 """Shifts of the lattice that are tried, along each axis."""

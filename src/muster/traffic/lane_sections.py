@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from muster.mission.arrays import Bools, Floats, Indices
+from muster.mission.values.arrays import Bools, Floats, Indices
 
 ON_LANE_M = 0.05
 """Who is no farther from the middle of a lane is on it, and who is no farther from its end is at its node."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from muster.mission.arrays import Floats, Indices
+from muster.mission.values.arrays import Floats, Indices
 
 _ROUNDING_M = 1e-9
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.mission.lanes import Lanes
-from muster.mission.ranges import require_finite_positive
+from muster.mission.values.ranges import require_finite_positive
 from muster.motion.free_space import GridSpace, PolygonSpace, Space
 from muster.motion.grid import Grid
 from muster.traffic.edge_conflicts import conflicts

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from muster import core
-from muster.mission.arrays import Bools, Floats, Indices
+from muster.mission.values.arrays import Bools, Floats, Indices
 
 _SAME = 1e-6
 """Relative: pieces of a square count as what they are, whatever float64 says."""

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_finite_positive
+from muster.mission.values.arrays import Floats
+from muster.mission.values.ranges import require_finite_positive
 from muster.motion.free_space import GridSpace, PolygonSpace, Space
 from muster.motion.grid import Grid
 from muster.motion.maps.raster import grid_of

@@ -21,9 +21,9 @@ import numpy as np
 import numpy.typing as npt
 
 from muster import core
-from muster.mission.arrays import Floats, Indices
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_counts
+from muster.mission.values.arrays import Floats, Indices
+from muster.mission.values.ranges import require_counts
 
 Outcome = Literal["arrived", "horizon", "unfinished", "impossible"]
 NO_GOAL = -1

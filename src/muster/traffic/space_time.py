@@ -19,9 +19,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.mission.arrays import Bools
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_counts
+from muster.mission.values.arrays import Bools
+from muster.mission.values.ranges import require_counts
 from muster.traffic.reservations import Cell, Reservations
 
 Ways = dict[str, list[Cell]]

@@ -14,8 +14,8 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from muster.mission.consistency import positions
 from muster.mission.errors import MissionError
+from muster.mission.mission_parts import positions
 from muster.mission.model import Mission, Point, Robot, Zone
 from muster.mission.records import findings
 from muster.mission.value_types import Fault

@@ -6,12 +6,12 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from muster.mission.errors import ParameterError
-from muster.mission.garbage import collector_paused
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Task
 from muster.mission.objectives import lateness, objective_values
 from muster.mission.plan import Plan
 from muster.mission.supported_features import require_supported
+from muster.mission.system.garbage import collector_paused
 from muster.mission.value_types import shown
 from muster.verification.book import book_faults
 from muster.verification.case import Case

@@ -6,13 +6,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
-from muster.mission.counting import counted
-from muster.mission.data_frames import data_frame
 from muster.mission.errors import ParameterError
 from muster.mission.goods import ONLY
-from muster.mission.html_tables import html_line, html_table
 from muster.mission.ignorable_rules import IGNORABLE
 from muster.mission.stations import station_sign
+from muster.mission.tables import data_frame, html_line, html_table
+from muster.mission.texts.counting import counted
 from muster.mission.value_types import shown
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel
 from starlette.requests import HTTPConnection
 
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster_control.api.parameter_types import Limit
 from muster_control.contract import PAGE_ROWS, User
 from muster_control.services.services import Services

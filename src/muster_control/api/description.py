@@ -10,7 +10,7 @@ from typing import Any
 from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
-from muster.mission.packaged_files import packaged_text
+from muster.mission.texts.packaged_files import packaged_text
 from muster_control.api.problems import Problem
 
 _SUMMARY = "Plan, watch and steer a team of robots"

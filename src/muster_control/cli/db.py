@@ -11,7 +11,7 @@ import click
 
 from muster.cli.exits import DONE
 from muster.cli.options import Finite, format_option, quiet_option
-from muster.mission.platforms import require_posix
+from muster.mission.system.platforms import require_posix
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])
 _FILE = click.Path(path_type=Path, dir_okay=False)

@@ -14,8 +14,8 @@ import click
 from muster.cli.exits import DONE
 from muster.cli.options import quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError, PluginError
-from muster.mission.near_matches import did_you_mean
-from muster.mission.platforms import require_posix
+from muster.mission.system.platforms import require_posix
+from muster.mission.texts.near_matches import did_you_mean
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -248,7 +248,7 @@ def _collecting_later() -> Iterator[Callable[[], None]]:
 
 async def _mission_page(app: FastAPI, mission: str) -> str:
     """The id of the mission's page: of one that ships, or of a file, which is uploaded unless it is there already."""
-    from muster.mission.near_matches import did_you_mean
+    from muster.mission.texts.near_matches import did_you_mean
     from muster_control.contract import MOST_ROWS, NotFoundError, User
 
     missions, who, file = app.state.services.missions, User("local", "command"), Path(mission)

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import Finding, MissionError, MusterError, NetworkError, ParameterError
-from muster.mission.interrupts import ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.mission.system.interrupts import ctrl_c_halts
 from muster.planning.export_formats import ExportOptions, Files
 from muster.planning.options import OPTIONS
 from muster.planning.request import Request

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster_control.client.connection import Connection
 from muster_control.client.reading import read
 from muster_control.client.server_plan import ServerPlan

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_from
+from muster.mission.reading.plan_reader import plan_from
 from muster_control.client.reading import read
 from muster_control.contract import PlanEntry
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 from typing import Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
-from muster.mission.order_files import OF_TASKS
 from muster.mission.plan import Plan
+from muster.mission.reading.order_files import OF_TASKS
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 from muster.running.fleet_registry import FLEETS
 from muster.running.run_request import RunRequest

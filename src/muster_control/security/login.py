@@ -10,7 +10,7 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import Route
 
-from muster.mission.packaged_files import packaged_text
+from muster.mission.texts.packaged_files import packaged_text
 from muster_control.contract import User
 from muster_control.security.authentication import SCOPE_KEY, Caller
 from muster_control.security.guard import GuardState

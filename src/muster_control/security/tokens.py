@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import cast
 
 from muster.mission.errors import Finding, InputError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster_control.contract import Role
 
 PREFIX = "muster_"

@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster_control.contract import OVER, ConflictError
 from muster_control.runs.records.record_files import LOG, TRACKS
 from muster_control.work.pool import Pool

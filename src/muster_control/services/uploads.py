@@ -9,7 +9,7 @@ from pathlib import PurePath
 from typing import Any
 
 from muster.mission.errors import Finding, MissionError, ParameterError
-from muster.mission.text_files import LARGEST_FILE as LARGEST_FILES
+from muster.mission.texts.text_files import LARGEST_FILE as LARGEST_FILES
 from muster.mission.value_types import shown
 from muster_files.sites.readers import READERS
 

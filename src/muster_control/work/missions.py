@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.from_data import mission_from
 from muster.mission.model import SCHEMA, Mission
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_from
+from muster.mission.reading.from_data import mission_from
+from muster.mission.reading.plan_reader import plan_from
+from muster.mission.reading.yaml_reader import parse_data
 from muster.mission.records import findings
 from muster.mission.value_types import Fault, shown
 from muster.mission.value_types import Path as Keys
-from muster.mission.yaml_reader import parse_data
 
 _HALF_CHARACTER = re.compile("[\ud800-\udfff]")
 _HERE = "mission"  # the folder of the mission's own file, within the worker's

@@ -24,7 +24,7 @@ from muster.cli.options import (
 )
 from muster.cli.outputs import require_folder, require_writable
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.planning.export_formats import (
     FIRMWARES,
     FORMATS,

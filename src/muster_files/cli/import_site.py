@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import click
@@ -11,6 +11,10 @@ from muster.cli.exits import DONE
 from muster.cli.options import Finite, column_option, pairs_of, quiet_option
 from muster.cli.outputs import require_writable
 from muster.mission.errors import ParameterError
+from muster.mission.import_ledger import Ledger
+
+_MOST_ROWS = 40
+_WIDEST = 48
 
 
 @click.command(name="import")
@@ -67,9 +71,8 @@ def command(
     output. What of the files is not read stands in a table at the end.
     """
     from muster.mission.plan import json_text
-    from muster.mission.text_files import write_text
+    from muster.mission.texts.text_files import write_text
     from muster.mission.yaml_writer import with_files_from, yaml_text
-    from muster_files.cli.ledger_table import ledger_lines
     from muster_files.importing import read_site
 
     if form == "json" and output is None:
@@ -89,7 +92,7 @@ def command(
         fov_deg=fov_deg,
         width_m=width_m,
     )
-    _say((*found.counts, *found.notes, *ledger_lines(found.ledger)), quiet=quiet or form == "json")
+    _say((*found.counts, *found.notes, *_ledger_lines(found.ledger)), quiet=quiet or form == "json")
     if form == "json":
         told = {"counts": found.counts, "notes": found.notes, "ledger": found.ledger.as_dict()}
         click.echo(json_text(told), nl=False)
@@ -120,3 +123,20 @@ def _origin(told: str) -> tuple[float, ...]:
         return lat_lon(told)
     except CellError as error:
         raise ParameterError(f"--origin: {told}; expected {error.args[0]}") from None
+
+
+def _ledger_lines(ledger: Ledger) -> Iterator[str]:
+    """Yield what was not read, as a table for people by file, kind and reason; nothing where all that counts was."""
+    rows = [row for row in ledger.not_read if not row.minor]
+    if not rows:
+        return
+    width = min(_WIDEST, max(len(row.told) for row in rows))
+    yield "not read:"
+    for file in dict.fromkeys(row.file for row in rows):
+        mine = [row for row in rows if row.file == file]
+        read, lost = ledger.count("read", file), ledger.count("passed over", file)
+        yield f"  {file}: {read:,} elements read, {lost:,} passed over"
+        for row in mine[:_MOST_ROWS]:
+            yield f"    {row.count:>6,}  {row.told:<{width}}  {row.how}: it {row.said}"
+        if len(mine) > _MOST_ROWS:
+            yield f"    and {len(mine) - _MOST_ROWS} more kinds; --format json names all"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import datetime
 
-from muster.mission.time_types import clock_text, moment_after
+from muster.mission.values.time_types import clock_text, moment_after
 
 
 @dataclass(frozen=True)

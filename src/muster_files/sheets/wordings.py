@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from muster.mission.counting import counted
 from muster.mission.goods import by_commodity, shown_amounts
 from muster.mission.model import Mission
 from muster.mission.stations import station_sign
+from muster.mission.texts.counting import counted
 from muster.report.fonts import Names
 from muster_files.earth import Spot
 from muster_files.sheets.content import Line, Sheet, Sheets

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import Finding
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
 from muster_files.antimeridian import unwrapped
 from muster_files.sites.decisions import is_open_line, is_wall
 from muster_files.sites.entries import Entry

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from datetime import date, datetime, time, timedelta
 from typing import Any
 
-from muster.mission.time_types import moment_in
+from muster.mission.values.time_types import moment_in
 from muster_files.sites.units import UNITS, Dimension, units_text
 
 _SPACES = str.maketrans(dict.fromkeys("\u00a0\u2009\u202f", " ") | {"\u2212": "-", "\u2019": "'"})

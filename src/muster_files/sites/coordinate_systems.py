@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Callable
 
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
 from muster_files.sites.features import Coordinate, refused
 
 _WGS84 = re.compile(r"(urn:ogc:def:crs:)?(OGC:[\d.]*:?CRS84h?|EPSG:[\d.]*:?(4326|4979))", re.IGNORECASE)

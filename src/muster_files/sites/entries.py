@@ -13,14 +13,15 @@ from muster_files.sites.features import Coordinate, Feature, Geometry, Layer
 from muster_files.sites.file_sizes import MOST_VALUES, require_few
 from muster_files.sites.headings import Columns, bare_numbers, columns_of
 from muster_files.sites.keys import CIRCLE, ROLE, SKIP, WITH_PLACE, keys_of
+from muster_files.sites.labels import labels_of, names_of, quoted
 from muster_files.sites.roles import Roles, forbidden_by_name, names_role
 from muster_files.sites.shapes import from_text
-from muster_files.sites.undecided import findings_of
 from muster_files.sites.value_fates import IN_DEGREES, IN_METRES, OF_PLACES, ValueFates
 
 _NEAR = 0.75
 """How much a heading that means nothing is like a key, to be taken for a slip."""
 _MOST_NAMED = 8
+_MOST_UNDECIDED = 20
 _OF_PLANS = frozenset(("starts_at", "ends_at", "starts_s", "ends_s"))
 """What exported plans say of stops: no slips of keys."""
 _EXPECTED_PLACE = "columns of latitude and longitude (or x and y); --column lat=HEADING --column lon=HEADING names them"
@@ -146,7 +147,7 @@ def _by_role(
     layer: Layer, decided: Sequence[tuple[Feature, Decision]], findings: list[Finding], notes: list[str]
 ) -> dict[str, list[tuple[Feature, Decision]]]:
     """The features by their roles; those that nothing decides are findings, those passed over are noted."""
-    findings += findings_of(layer, [pair for pair in decided if pair[1].role is None], len(decided))
+    findings += _undecided_findings(layer, [pair for pair in decided if pair[1].role is None], len(decided))
     found: dict[str, list[tuple[Feature, Decision]]] = {}
     skipped: dict[str, list[str]] = {}
     for feature, decision in decided:
@@ -157,6 +158,28 @@ def _by_role(
             found.setdefault(decision.role, []).append((feature, decision))
     notes += [f"{layer.title}: passed over, {reason}: {some_of(names)}" for reason, names in skipped.items()]
     return found
+
+
+def _undecided_findings(layer: Layer, undecided: Sequence[tuple[Feature, Decision]], of: int) -> Iterator[Finding]:
+    """Yield a finding for each undecided feature of a layer that has `of` features, up to a number of lines.
+
+    Each has the reason, and the option that decides.
+    """
+    counts: dict[str, int] = {}
+    for feature, _ in undecided:
+        for label in labels_of(layer, feature)[:1]:
+            counts[label] = counts.get(label, 0) + 1
+    for feature, decision in undecided[:_MOST_UNDECIDED]:
+        own = next((label for label in labels_of(layer, feature)[:1] if counts[label] == 1), None)
+        everything = names_of(layer)[0]
+        named = everything if own is None or (len(undecided) == of > 1) else own
+        first, *others = decision.choices
+        expected = f"--as {quoted(f'{named}={first}')} (or {', '.join(others)}) of muster import, or a property kind"
+        yield feature.finding("", f"undecided: {decision.reason}", expected)
+    if len(undecided) > _MOST_UNDECIDED:
+        feature, decision = undecided[_MOST_UNDECIDED]
+        told = f"undecided, with {len(undecided) - _MOST_UNDECIDED - 1} more: {decision.reason}"
+        yield feature.finding("", told, f"--as {quoted(f'{names_of(layer)[0]}={decision.choices[0]}')}")
 
 
 def _forbidden(layer: Layer, entry: Entry) -> Entry:

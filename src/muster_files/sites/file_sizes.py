@@ -10,7 +10,7 @@ import zipfile
 import zlib
 from pathlib import Path
 
-from muster.mission.text_files import bytes_of
+from muster.mission.texts.text_files import bytes_of
 from muster_files.sites.features import refused
 
 MOST_BYTES = 64 * 2**20

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from muster.mission.import_ledger import Fate, LedgerBook, Source, passed_over, read_as
-from muster.mission.json_reader import JsonPlaces
+from muster.mission.reading.json_reader import JsonPlaces
 from muster.mission.value_types import Path as Where
 from muster_files.sites.coordinate_systems import to_wgs84
 from muster_files.sites.csv_reader import decoded

@@ -13,8 +13,8 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from muster.mission.extras import needs_extra
 from muster.mission.import_ledger import EMPTY, Fate, LedgerBook, Source, passed_over, read_as
+from muster.mission.system.extras import needs_extra
 from muster_files.sites.coordinate_systems import to_wgs84
 from muster_files.sites.features import Coordinate, Feature, Geometry, Layer, refused, with_name
 from muster_files.sites.file_sizes import MOST_BYTES, MOST_CELLS, MOST_ROWS, read_bytes, require_few

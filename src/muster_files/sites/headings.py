@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.mission.errors import Finding, ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster_files.sites.cells import CellError, NoValue, is_bare_number, moment, pairs
 from muster_files.sites.features import Feature, Layer
 from muster_files.sites.key_words import MOST, OF_ROBOTS, SUBJECTS

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from muster.mission.packaged_files import packaged_data
+from muster.mission.texts.packaged_files import packaged_data
 
 _WORDS = packaged_data("muster_files.sites", "key_words.yaml")
 

@@ -12,8 +12,8 @@ from functools import cache, partial
 from typing import Any
 
 from muster.mission.action_keys import ACTION_KEYS
-from muster.mission.packaged_files import packaged_data
 from muster.mission.records import key_of, specified
+from muster.mission.texts.packaged_files import packaged_data
 from muster.mission.value_types import Choice, Flag, Kind, Many, Number, OneOrMany, Text, Whole
 from muster_files.sites import cells, energy_cells
 from muster_files.sites import key_words as words

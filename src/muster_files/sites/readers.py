@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from muster.mission.errors import Finding, MissionError
-from muster.mission.plugins import Registry, function_expected
+from muster.mission.system.plugins import Registry, function_expected
 
 if TYPE_CHECKING:
     from muster_files.sites.features import Layer

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from muster.mission.errors import Finding, ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster_files.sites import vocabulary as words
 from muster_files.sites.decisions import FITTING, KINDS, ROLE_OF, Decision, Surroundings, of_point, of_shape
 from muster_files.sites.features import Feature, Layer

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
 from muster_files.sites.features import Coordinate, Geometry, Ring, Shape
 
 if TYPE_CHECKING:

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from muster.mission.counting import counted
 from muster.mission.errors import Finding, MissionError
-from muster.mission.from_data import mission_from
-from muster.mission.garbage import collector_paused
 from muster.mission.import_ledger import Ledger
 from muster.mission.model import Mission
+from muster.mission.reading.from_data import mission_from
+from muster.mission.reading.thesis_csv import suitability_table
 from muster.mission.source import Source
-from muster.mission.thesis_csv import suitability_table
+from muster.mission.system.garbage import collector_paused
+from muster.mission.texts.counting import counted
 from muster.mission.yaml_writer import file_data
 from muster_files.sites.builder import Builder, SiteOptions
 from muster_files.sites.decisions import BY, LINE, POINT

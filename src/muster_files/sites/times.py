@@ -7,7 +7,7 @@ from datetime import datetime, time
 from typing import Any
 
 from muster.mission.errors import Finding
-from muster.mission.time_types import moment_in
+from muster.mission.values.time_types import moment_in
 from muster_files.sites.entries import Entry
 
 KEYS = ("opens", "closes", "window", "deadline", "due", "starts", "ends", "shift")

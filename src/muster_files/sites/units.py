@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from muster.mission.packaged_files import packaged_data
+from muster.mission.texts.packaged_files import packaged_data
 
 Dimension = Literal["", "time", "length", "speed", "angle", "mass"]
 

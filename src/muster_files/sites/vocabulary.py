@@ -13,7 +13,7 @@ import unicodedata
 from collections.abc import Mapping
 from functools import lru_cache
 
-from muster.mission.packaged_files import packaged_data
+from muster.mission.texts.packaged_files import packaged_data
 
 CLOSED, BOUNDARY, SURVEY, OBSTACLE = "closed", "boundary", "survey", "obstacle"
 TASK, ROBOT, STATION, LANE, HOME = "task", "robot", "station", "lane", "home"

@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
 from muster_files.sites.entries import some_of
 from muster_files.sites.features import Layer, refused
 from muster_files.sites.file_sizes import MOST_BYTES, MOST_CELLS, MOST_ROWS, open_archive, require_few, unpacked

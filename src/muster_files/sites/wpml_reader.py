@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from muster.mission.csv_files import number
 from muster.mission.import_ledger import Fate, Source, passed_over
+from muster.mission.reading.csv_files import number
 from muster_files.sites.features import HEIGHT, Feature, Geometry, Layer, layer_of, refused
 from muster_files.sites.kml_reader import Placemark
 from muster_files.sites.xml_elements import Element, XmlDocument

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 
 from muster.mission.errors import Finding, InputError
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
 from muster.report.styles import ALARM, LEFT_OUT, PALETTE
 from muster_physics.film.captions import Picture, rgb
 

@@ -11,9 +11,9 @@ import click
 
 from muster.cli.exit_codes import Ending, exit_code_if
 from muster.cli.options import MissionFile, mission_argument
-from muster.mission.interrupts import TO_END, ctrl_c_halts, signals_interrupt
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
+from muster.mission.system.interrupts import TO_END, ctrl_c_halts, signals_interrupt
 from muster_robots.cli.real_robots import (
     LastLines,
     RealRunOptions,

@@ -28,11 +28,11 @@ from muster.cli.record_output import drawing_options, kept_record, record_option
 from muster.cli.report_tables import print_report
 from muster.cli.request_options import request_options, settings_from
 from muster.cli.tables import sequence
-from muster.mission.counting import counted
 from muster.mission.errors import IncompletePlanError, MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 from muster.mission.records import Settings
+from muster.mission.texts.counting import counted
 from muster.planning.options import PlanningOptions
 from muster.running.fleet_registry import FLEETS, settings_class
 from muster.running.observed_run import ObservedRun

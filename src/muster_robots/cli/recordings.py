@@ -11,8 +11,8 @@ import click
 from muster.cli.exits import DONE
 from muster.cli.options import Finite, Verb
 from muster.cli.tables import number, print_table
-from muster.mission.counting import counted
 from muster.mission.errors import ParameterError
+from muster.mission.texts.counting import counted
 
 if TYPE_CHECKING:
     from muster.report.record import Recording

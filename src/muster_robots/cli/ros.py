@@ -17,10 +17,10 @@ from muster.cli.options import (
     require_none_without_mission,
 )
 from muster.mission.errors import MusterError, NetworkError, ParameterError
-from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
+from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster_robots.cli.real_robots import (
     LastLines,
     RealRunOptions,

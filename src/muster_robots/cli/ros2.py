@@ -7,7 +7,7 @@ from contextlib import closing
 import click
 
 from muster.cli.options import MissionFile, mission_argument
-from muster.mission.interrupts import TO_END, ctrl_c_halts
+from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster_robots.cli.real_robots import (
     RealRunOptions,
     carried_out_from_here,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import click
 
 from muster.cli.options import MissionFile, mission_argument
-from muster.mission.interrupts import TO_END, ctrl_c_halts
 from muster.mission.records import key_of, required, specified
+from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster.running.fleet_registry import FLEETS, settings_class
 from muster_robots.cli.real_robots import (
     RealRunOptions,

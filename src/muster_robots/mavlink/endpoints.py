@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from muster.mission.errors import NetworkError, ParameterError
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
 
 _BAUD = 57600
 _UNSENT_BYTES = 4096

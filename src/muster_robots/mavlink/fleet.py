@@ -13,9 +13,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 from muster.execution.final_state import FinalState
 from muster.execution.fleet import Failure
-from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot
+from muster.mission.system.clock import Clock, SystemClock
 from muster.mission.value_types import shown
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 from muster_robots.fleet_settings import FlightSettings

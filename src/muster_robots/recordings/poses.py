@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from muster.mission.arrays import Floats
 from muster.mission.errors import Finding, InputError, ParameterError
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
+from muster.mission.values.arrays import Floats
 from muster.report.record.reader import whole_records
 from muster.report.record.writer import require_mcap
 from muster_robots.ros2.description import Message

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.arrays import Floats
 from muster.motion.metrics import TrajectoryError, path_length, risk_factor, trajectory_error
 from muster.report.record import Recording
 from muster_robots.recordings.poses import PoseTrack

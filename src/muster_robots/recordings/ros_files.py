@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
 from muster.report.record import Recording
 from muster.report.record.json_messages import nanoseconds
 from muster.report.record.writer import require_mcap

@@ -13,7 +13,7 @@ from typing import Any, Literal
 from muster.mission.errors import MusterError, NetworkError, ParameterError
 from muster.mission.model import Event, Mission, MovedTask, Task
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_from
+from muster.mission.reading.plan_reader import plan_from
 from muster.mission.value_types import shown
 from muster_robots.discovery import NAME
 from muster_robots.ros1.fleet import Ros1Fleet

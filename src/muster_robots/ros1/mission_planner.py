@@ -16,7 +16,7 @@ from typing import Any
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_from
+from muster.mission.reading.plan_reader import plan_from
 from muster.mission.value_types import shown
 from muster_robots.ros1.heard_robots import robots_heard
 from muster_robots.ros1.message_conversion import text_of

@@ -9,10 +9,10 @@ from typing import Any
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
-from muster.mission.text_files import read_text
-from muster.mission.thesis_csv import read_csv_for
+from muster.mission.reading.thesis_csv import read_csv_for
+from muster.mission.reading.yaml_reader import parse_yaml
+from muster.mission.texts.text_files import read_text
 from muster.mission.value_types import shown
-from muster.mission.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
 from muster_robots.ros1.ros import rospy
 

@@ -10,7 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
-from muster.mission.interrupts import ctrl_c_held_back
+from muster.mission.system.interrupts import ctrl_c_held_back
 from muster_robots.ros1.node import SHUT_DOWN, master_answers
 from muster_robots.ros1.ros import rospy
 

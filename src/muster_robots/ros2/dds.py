@@ -15,7 +15,7 @@ from collections.abc import Iterable
 from typing import Any, Generic, TypeVar
 
 from muster.mission.errors import NetworkError, ParameterError
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
 from muster_robots.ros2.description import ROS2, Field, Message, fields_of, from_foreign, to_foreign
 from muster_robots.ros2.middleware import KEPT, LATCHED, Navigator, domain_or_own, line_of
 

@@ -13,9 +13,9 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal
 
-from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError
 from muster.mission.model import Event, Mission, Robot
+from muster.mission.system.clock import Clock, SystemClock
 from muster_robots.discovery import topics_in
 from muster_robots.ros2.goals import Goals, Nav2Goals, PoseGoals
 from muster_robots.ros2.joining import Ros2Newcomers

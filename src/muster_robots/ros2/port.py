@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from muster.mission.model import Robot
-from muster.mission.ranges import require_positive
+from muster.mission.values.ranges import require_positive
 from muster.motion.frames import angles, flu_to_enu, pose_of, pose_transform, quaternion_rotation
 from muster.motion.port import Place, Telemetry, Waypoint
 from muster_robots.follower import Follower

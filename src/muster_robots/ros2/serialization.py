@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from muster.mission.errors import ParameterError
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
 from muster_robots.ros2.description import ROS1, ROS2, Message, from_foreign, to_foreign
 
 CDR_HEADER = b"\x00\x01\x00\x00"

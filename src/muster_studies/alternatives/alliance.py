@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.mission.ranges import require_within
+from muster.mission.values.ranges import require_within
 from muster_studies.alternatives.motivation import Team
 
 

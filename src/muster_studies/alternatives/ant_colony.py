@@ -22,7 +22,7 @@ from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.strings import Best, Floats
-from muster.mission.ranges import require_counts, require_within
+from muster.mission.values.ranges import require_counts, require_within
 
 _LEAST_PHEROMONE = 1e-9  # beside 1 at the beginning: no path is lost to rounding
 

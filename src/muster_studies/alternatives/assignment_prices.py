@@ -13,7 +13,7 @@ from collections import deque
 
 import numpy as np
 
-from muster.mission.arrays import Floats, Indices
+from muster.mission.values.arrays import Floats, Indices
 
 _SCALE = 5.0
 _NOBODY = -1

@@ -20,7 +20,7 @@ from muster.allocation.book_keeper import book_of
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.winners import Floats, Sale
-from muster.mission.ranges import require_within
+from muster.mission.values.ranges import require_within
 from muster_studies.alternatives.assignment_prices import assign
 
 

@@ -25,7 +25,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.winners import Floats, Sale
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_counts
+from muster.mission.values.ranges import require_counts
 from muster_studies.alternatives.bundle_clearing import BundleBid, clear
 
 

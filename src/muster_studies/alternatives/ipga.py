@@ -19,7 +19,7 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.strings import Decoded, Floats, Strings, random_strings, ranking, string_of
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_counts
+from muster.mission.values.ranges import require_counts
 
 
 @dataclass(frozen=True, kw_only=True)

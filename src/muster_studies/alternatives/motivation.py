@@ -9,7 +9,7 @@ import numpy as np
 
 from muster.allocation.allocator import Routes
 from muster.allocation.problem import Problem
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 
 _FREE = -1
 _ROUNDING = 1e-12  # as the core allows for a capacity that is filled exactly

@@ -18,7 +18,7 @@ from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.allocation.strings import Decoded, Floats, Strings, random_strings, ranking, roulette, string_of
-from muster.mission.ranges import require_counts, require_within
+from muster.mission.values.ranges import require_counts, require_within
 
 
 @dataclass(frozen=True, kw_only=True)

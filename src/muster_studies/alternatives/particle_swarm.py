@@ -23,7 +23,7 @@ from muster.allocation.problem import Bools, Problem
 from muster.allocation.stop import Stop
 from muster.allocation.strings import Best, Floats, Strings, fitness, ranking, spun
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_counts, require_within
+from muster.mission.values.ranges import require_counts, require_within
 
 LEADERS = ("best", "pareto")
 _INSIDE = 1.0 - 1e-9  # the upper wall belongs to the last robot

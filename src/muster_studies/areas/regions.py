@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-from muster.mission.packaged_files import packaged_data
+from muster.mission.texts.packaged_files import packaged_data
 from muster_studies.areas.shapes import Field
 
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from muster.mission.packaged_files import packaged_data
+from muster.mission.texts.packaged_files import packaged_data
 from muster_studies.instances.random_areas import Ring, random_area, ring
 
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from muster.mission.arrays import Floats
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
+from muster.mission.values.arrays import Floats
 from muster.motion.avoidance import Agents, Orca
 from muster.motion.avoidance.orca import Parameters
 from muster_studies.benches.measurement import Measurement

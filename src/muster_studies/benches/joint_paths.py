@@ -17,7 +17,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from muster.mission.arrays import Bools
+from muster.mission.values.arrays import Bools
 from muster.traffic.joint_path_faults import faults
 from muster.traffic.joint_paths import JointPaths, Parameters, costs, grid_graph, joint_paths
 from muster.traffic.move_faults import distances

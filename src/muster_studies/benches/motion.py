@@ -10,7 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from muster.mission.arrays import Bools, Floats
+from muster.mission.values.arrays import Bools, Floats
 from muster.motion.free_space import GridSpace
 from muster.motion.grid import Grid
 from muster.motion.path import Path

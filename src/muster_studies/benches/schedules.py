@@ -9,7 +9,7 @@ from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.generation.ordered import ordered_mission
 from muster.generation.windows import windows_mission
-from muster.mission.clock import ProcessorClock
+from muster.mission.system.clock import ProcessorClock
 from muster_studies.benches.measurement import Measurement
 from muster_studies.instances.lattice import lattice_mission
 from muster_studies.runs import accepted

@@ -19,8 +19,8 @@ from typing import Any
 
 import yaml
 
-from muster.mission.extras import needs_extra
 from muster.mission.model import Mission, Robot
+from muster.mission.system.extras import needs_extra
 from muster.motion.port import Waypoint
 from muster.simulation import KinematicWorld
 from muster_studies.benches.measurement import Measurement

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.platforms import usable_processors
+from muster.mission.system.platforms import usable_processors
 from muster.mission.value_types import shown
 from muster_studies.comparison.comparison import Comparison
 from muster_studies.comparison.contestants import AllocatorSpec, contestants_of

@@ -9,9 +9,8 @@ from math import isfinite, isinf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from muster.mission.counting import counted
-from muster.mission.data_frames import frame_of_records
-from muster.mission.html_tables import html_line, html_table
+from muster.mission.tables import frame_of_records, html_line, html_table
+from muster.mission.texts.counting import counted
 from muster_studies.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
 from muster_studies.comparison.notes import cut_short_note, notes_without_plan
 from muster_studies.comparison.run import Run
@@ -163,7 +162,7 @@ class Comparison:
         OSError
             if it cannot be written.
         """
-        from muster.mission.text_files import write_text
+        from muster.mission.texts.text_files import write_text
         from muster.report.files import svg_text
         from muster_studies.comparison.page import Contents, page, require_page
 

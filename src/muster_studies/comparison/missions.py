@@ -12,7 +12,7 @@ from muster.generation.registry import GENERATORS
 from muster.library import mission_names
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import YAML_SUFFIXES
 from muster.planning.loading import load

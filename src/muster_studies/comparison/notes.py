@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from muster.mission.counting import counted
+from muster.mission.texts.counting import counted
 from muster_studies.comparison.run import Run
 
 

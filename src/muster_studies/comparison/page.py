@@ -11,7 +11,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from muster.mission.errors import ParameterError
-from muster.mission.packaged_files import packaged_text
+from muster.mission.texts.packaged_files import packaged_text
 from muster_studies.comparison.cells import PAIR_COLUMNS, STANDING_COLUMNS, pair_cells, standing_cells
 from muster_studies.comparison.notes import cut_short_note
 from muster_studies.comparison.ranking import Best, bests, by_mission, close, typical

@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from muster.mission.clock import ProcessorClock
+from muster.mission.system.clock import ProcessorClock
 from muster.verification import Verdict, verify
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import OBJECTIVES
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
 DEFAULT_TIME_LIMIT_S = 1.0

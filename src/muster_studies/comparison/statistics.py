@@ -15,7 +15,7 @@ from statistics import fmean, median
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.extras import needs_extra
+from muster.mission.system.extras import needs_extra
 from muster_studies.comparison.ranking import (
     Rank,
     are_equal,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from importlib.resources import as_file, files
 
-from muster.mission.electric_vrptw import read_electric_vrptw
 from muster.mission.errors import ParameterError
-from muster.mission.li_lim import read_li_lim
 from muster.mission.model import Mission
+from muster_files.instances.electric_vrptw import read_electric_vrptw
+from muster_files.instances.li_lim import read_li_lim
 from muster_studies.instances.references import numbered
 
 _FOLDER = "goods_instances"

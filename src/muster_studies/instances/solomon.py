@@ -7,7 +7,7 @@ from importlib.resources import as_file, files
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.mission.solomon import read_solomon
+from muster_files.instances.solomon import read_solomon
 from muster_studies.instances.references import numbered
 
 _FOLDER = "solomon_instances"

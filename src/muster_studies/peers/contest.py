@@ -18,9 +18,9 @@ from muster.generation.teams import counted_teams
 from muster.generation.transports import transports_mission
 from muster.generation.uniform import large_mission
 from muster.generation.windows import windows_mission
-from muster.mission.clock import ProcessorClock
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.mission.system.clock import ProcessorClock
 from muster.verification import verify
 from muster_studies.instances.charging import charging_mission
 from muster_studies.instances.coalitions import SKILL_SETS

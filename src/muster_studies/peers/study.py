@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from statistics import fmean
 
 from muster.mission.model import OBJECTIVES
-from muster.mission.ranges import require_positive
+from muster.mission.values.ranges import require_positive
 from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.peers.cells import mean_cell, ratio_cell, worst_cell

@@ -11,8 +11,8 @@ from muster.allocation.auction import AUCTION
 from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE
 from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan
+from muster.mission.texts.near_matches import did_you_mean
 from muster_team.auctions.bundles import BundleValuer
 from muster_team.auctions.valuation import AuctionValuer
 from muster_team.negotiators.negotiator import Negotiator

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Self
 
-from muster.mission.clock import Clock, SystemClock
+from muster.mission.system.clock import Clock, SystemClock
 from muster_team.knowledge.effects import Outgoing
 from muster_team.knowledge.messages import RoundBids, Sold
 from muster_team.negotiators.negotiator import Negotiator

@@ -6,8 +6,8 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import NetworkError
+from muster.mission.system.clock import Clock, SystemClock
 from muster_team.negotiators.negotiator import Negotiator
 from muster_team.negotiators.robot_view import View, view_of
 from muster_team.processes.node import Node, NodeStatus

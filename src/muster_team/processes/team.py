@@ -15,8 +15,8 @@ from multiprocessing.connection import Connection, wait
 from types import TracebackType
 
 from muster.mission.errors import MusterError
-from muster.mission.interrupts import ctrl_c_held_back
-from muster.mission.platforms import require_posix
+from muster.mission.system.interrupts import ctrl_c_held_back
+from muster.mission.system.platforms import require_posix
 from muster_team.membership.members import Timeouts
 from muster_team.negotiators.robot_view import View
 from muster_team.network.optional_parts import require_net

@@ -5,7 +5,7 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.yaml_reader import parse_yaml
 
 if not all(find_spec(name) for name in ("PIL", "scipy", "shapely")):
     collect_ignore_glob = ["test_*.py"]

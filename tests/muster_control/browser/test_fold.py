@@ -10,7 +10,7 @@ from tests.state.played import SAMPLES, Played, event, site
 from tests.state.test_recovery import plan  # noqa: F401 - a fixture
 
 from muster.mission.events import Event
-from muster.mission.plan_reader import plan_from
+from muster.mission.reading.plan_reader import plan_from
 from muster.mission.yaml_writer import plain
 from muster.state import MissionState, event_of
 from muster.state.event import KINDS

@@ -3,7 +3,7 @@
 import pytest
 from playwright.sync_api import expect
 
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster_control.client import Client
 
 pytestmark = [pytest.mark.long, pytest.mark.xdist_group("goods and energy")]

@@ -17,7 +17,7 @@ from tests.muster_control.serving import served
 
 from muster import load
 from muster.allocation.stop import Stop
-from muster.mission.installation import installed_version
+from muster.mission.system.installation import installed_version
 from muster.running import doctor
 from muster_control.client import Client
 from muster_control.client.backend import ServerBackend, awaited, followed

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from muster.library.shipped import mission_path
-from muster.mission.yaml_reader import read_yaml
+from muster.mission.reading.yaml_reader import read_yaml
 from muster.mission.yaml_writer import plain
 from muster_control.contract import MissionVersion
 from muster_control.pages.map import scene_of

@@ -9,8 +9,8 @@ import sys
 from contextlib import closing
 
 import muster
-from muster.mission.clock import VirtualClock
 from muster.mission.model import Mission, Robot, Rules
+from muster.mission.system.clock import VirtualClock
 from muster.report.record.json_messages import json_bytes
 from muster.state import MissionState
 from muster_control.runs.run_settings import request_of

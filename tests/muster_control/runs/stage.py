@@ -6,7 +6,7 @@ from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from muster.mission.clock import VirtualClock
+from muster.mission.system.clock import VirtualClock
 from muster_control.runs.log.tracks import unpacked
 from muster_control.runs.runner.log_recorder import LogRecorder
 from muster_control.runs.runner.main import _known, _world_run

@@ -18,7 +18,7 @@ from tests.muster_control.runs.store import ADA, EVE, planned, settings_of
 
 import muster
 from muster.mission.errors import ParameterError
-from muster.mission.plan_reader import plan_from
+from muster.mission.reading.plan_reader import plan_from
 from muster.mission.yaml_writer import yaml_text
 from muster_control.contract import BusyError, ConflictError, Entry, ForbiddenError, NotFoundError, StoreError
 from muster_control.services.records import Records

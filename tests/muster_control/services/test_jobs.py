@@ -491,10 +491,10 @@ def test_the_server_loads_nothing_heavy():
 import sys
 import muster_control.services.jobs, muster_control.services.plans
 heavy = ("numpy", "scipy", "shapely", "matplotlib", "muster.allocation.", "muster.simulation", "muster.verification",
-         "muster_files.", "muster.report", "muster.mission.yaml_reader")
+         "muster_files.", "muster.report", "muster.mission.reading.yaml_reader")
 light = {"muster_control.contract", "muster.allocation.parameter_types",
          "muster_files.sites", "muster_files.sites.readers", "muster_files.mission_readers",
-         "muster_files.qgc_format"}
+         "muster_files.qgc", "muster_files.qgc.plan_format"}
 print([name for name in sys.modules if name.startswith(heavy) and name not in light])
 """
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -10,8 +10,8 @@ from tests.muster_files.sites.writers import CSV, ROBOTS, area, geojson
 
 import muster
 from muster.library import mission_path
-from muster.mission.plan_reader import plan_from
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.plan_reader import plan_from
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster_control.work import StopRequest, WorkError
 
 

@@ -7,7 +7,7 @@ from tests.muster_files.sheets.crew import CREW, crew
 
 from muster import load, verify
 from muster.mission.model import Action, Task
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster.motion.actions import plan as motion_of
 from muster.planning.export_formats import ExportOptions
 from muster.verification import Stop

@@ -8,7 +8,7 @@ from tests.muster_files.sheets.crew import CREW, crew
 
 from muster import load, verify
 from muster.mission.errors import MissingExtraError
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster.planning.export_formats import ExportOptions
 from muster.planning.exporting import exported
 

@@ -86,7 +86,7 @@ def test_ids_are_no_formulas(tmp_path):
     text = CREW.replace("id: idle", 'id: "=1+1"').replace("task: scan", 'task: "@x"').replace("id: scan", 'id: "@x"')
     (tmp_path / "crew.yaml").write_text(text, encoding="utf-8")
     from muster import load, verify
-    from muster.mission.plan_reader import plan_of
+    from muster.mission.reading.plan_reader import plan_of
 
     mission = load(tmp_path / "crew.yaml")
     verdict = verify(mission, plan_of({"t": ["@x"], "=1+1": []}))

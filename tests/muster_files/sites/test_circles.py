@@ -11,8 +11,8 @@ from tests.muster_files.sites import writers
 from tests.muster_files.sites.writers import feature, geojson, points
 
 from muster import MissionError, load, read_site
-from muster.mission.circles import enclosing
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.circles import enclosing
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
 
 MISSION = """\

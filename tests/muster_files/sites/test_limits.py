@@ -12,7 +12,7 @@ import pytest
 from tests.muster_files.sites import writers
 
 from muster.mission.errors import MissionError
-from muster.mission.text_files import LARGEST_FILE
+from muster.mission.texts.text_files import LARGEST_FILE
 from muster_files.importing import read_site
 
 HEAD, TAIL = b'<kml xmlns="http://www.opengis.net/kml/2.2"><Document>', b"</Document></kml>"

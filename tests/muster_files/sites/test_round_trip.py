@@ -16,7 +16,7 @@ from tests.muster_files.sites.writers import write_geopackage
 from muster.mission.geodesy import enu_to_wgs84, wgs84_to_enu
 from muster.mission.model import Map, Mission, Origin, Robot, Rules, Station, Task, Zone
 from muster.mission.plan import Plan, Route
-from muster.mission.yaml_reader import parse_yaml
+from muster.mission.reading.yaml_reader import parse_yaml
 from muster.mission.yaml_writer import yaml_text
 from muster.planning.export_formats import ExportOptions
 from muster.planning.exporting import exported

@@ -13,7 +13,7 @@ from muster.cli.exits import INTERRUPTED, STILL_MOVING, TASKS_LOST
 from muster.cli.main import run
 from muster.execution.final_state import FinalState
 from muster.execution.report import ObjectiveReport, Report
-from muster.mission.interrupts import TO_END, ctrl_c_halts
+from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster.planning.options import PlanningOptions
 from muster.running.live import wait_for_robots
 from muster.running.observed_run import ObservedRun

@@ -3,9 +3,9 @@
 import socket
 
 import muster
-from muster.mission.clock import VirtualClock
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission, Origin, Robot, Rules, Task
+from muster.mission.system.clock import VirtualClock
 from muster.running.live import carry_out_live
 from muster_robots.fleet_settings import FlightSettings
 from muster_robots.mavlink import MavlinkFleet

@@ -10,8 +10,8 @@ import pytest
 from tests.muster_robots.mavlink.drones import ORIGIN, Sky, mission
 
 import muster
-from muster.mission.clock import VirtualClock
 from muster.mission.errors import NetworkError, ParameterError
+from muster.mission.system.clock import VirtualClock
 from muster.running.live import carry_out_live
 from muster_robots.fleet_settings import FlightSettings
 from muster_robots.mavlink import MavlinkFleet

@@ -12,7 +12,7 @@ from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.allocation.consensus_bundle import Parameters as BundleParameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.mission.plan_reader import read_plan
+from muster.mission.reading.plan_reader import read_plan
 from muster_team.negotiators.participation import (
     bundler_of,
     negotiator_of,

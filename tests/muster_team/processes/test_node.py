@@ -8,7 +8,7 @@ pytest.importorskip("cryptography", reason="the extra `net` is not installed")
 
 from tests.muster_team.teams import Team
 
-from muster.mission.clock import VirtualClock
+from muster.mission.system.clock import VirtualClock
 from muster_team.network.codec import PROTOCOL
 from muster_team.processes.node import Node
 

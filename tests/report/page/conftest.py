@@ -5,7 +5,7 @@ from tests.report.page.browser import Browser, browser_found
 from tests.report.voyages import carry_out, shipped
 
 import muster
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster.report.page import write_page
 from muster.report.record import RecordWriter, read_record
 

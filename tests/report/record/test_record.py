@@ -14,10 +14,10 @@ import pytest
 from tests.report.voyages import carry_out, shipped
 
 import muster
-from muster.mission.clock import VirtualClock
 from muster.mission.errors import InputError, MissingExtraError, MusterError, ParameterError
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster.mission.plan import Plan, Route
+from muster.mission.system.clock import VirtualClock
 from muster.report.record import RecordWriter, read_record
 from muster.report.record.schemas import SCHEMAS, TOPICS
 

@@ -21,10 +21,10 @@ from muster.allocation.feasibility import impossible, usable_pairs
 from muster.allocation.problem import Problem
 from muster.allocation.rules.rule import ROUNDING
 from muster.allocation.witness_plans import Judge, bare_plan
-from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import ParameterError
-from muster.mission.extras import needs_extra
 from muster.mission.plan import Plan, Route
+from muster.mission.system.clock import Clock, SystemClock
+from muster.mission.system.extras import needs_extra
 
 if TYPE_CHECKING:
     from muster.allocation.exact.goods import Cut

@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from muster import core
 from muster.allocation.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot, listed
-from muster.mission.counting import counted
 from muster.mission.model import Mission, Robot
+from muster.mission.texts.counting import counted
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from muster.allocation.bottleneck import fills, matched, on_some_matching
 from muster.allocation.rules.rule import ROUNDING, Bools, Change, InPlan, Limits, Outlook, Question, Rule, listed
 from muster.allocation.timed_rules import ability
 from muster.mission.model import Robot, Task, TeamPart
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 
 _MOST_NAMED, _MOST_ADDED = 4, 10
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from muster.allocation.rules.rule import ROUNDING, Limits, Question, listed
-from muster.mission.time_types import clock_text
+from muster.mission.values.time_types import clock_text
 
 _DIGITS = (2, 4, 6, 9)
 _LONGEST = 1e9  # seconds, up to which times are said as times of day

@@ -7,7 +7,7 @@ from typing import cast
 from muster.mission.action_keys import ACTION_GROUP, ACTION_KEYS, keys_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot, Task
-from muster.mission.plugins import Registry
+from muster.mission.system.plugins import Registry
 from muster.motion.actions.action import Impossible, TaskAction, TaskMotion
 from muster.motion.actions.go_to_goal import GoToGoal
 

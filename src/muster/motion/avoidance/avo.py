@@ -19,7 +19,7 @@ from typing import ClassVar
 import numpy as np
 
 from muster import core
-from muster.mission.ranges import require_finite_positive
+from muster.mission.values.ranges import require_finite_positive
 from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Floats, Obstacles
 from muster.motion.avoidance.parameters import CommonParameters
 

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from muster import core
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_finite_positive
+from muster.mission.values.ranges import require_finite_positive
 from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Floats, Obstacles
 from muster.motion.avoidance.method import Method
 

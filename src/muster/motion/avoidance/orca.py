@@ -16,7 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from muster.mission.ranges import require_finite_positive
+from muster.mission.values.ranges import require_finite_positive
 from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Floats, Obstacles
 from muster.motion.avoidance.parameters import CommonParameters
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from muster.mission.ranges import require_counts, require_finite_positive, require_positive
+from muster.mission.values.ranges import require_counts, require_finite_positive, require_positive
 
 
 @dataclass(frozen=True, kw_only=True)

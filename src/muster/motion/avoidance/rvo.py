@@ -27,7 +27,7 @@ from typing import ClassVar
 
 from muster import core
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_counts, require_finite_positive
+from muster.mission.values.ranges import require_counts, require_finite_positive
 from muster.motion.avoidance.agents import (
     NO_OBSTACLES,
     Agents,

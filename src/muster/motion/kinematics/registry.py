@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.motion.kinematics.differential_drive import DifferentialDrive
 from muster.motion.kinematics.hexacopter import Hexacopter
 from muster.motion.kinematics.holonomic import Holonomic

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from muster.mission.areas.polygons import polygon_fault
 from muster.mission.model import Point
-from muster.mission.polygons import polygon_fault
 from muster.mission.value_types import Fault, Path
 from muster.motion.grid import Floats
 from muster.motion.maps.narrow_places import without_pinches

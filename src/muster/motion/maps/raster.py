@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_positive
+from muster.mission.values.ranges import require_positive
 from muster.motion.free_space import PolygonSpace
 from muster.motion.grid import Bools, Grid, Indices
 

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from muster.mission.errors import MissionError
+from muster.mission.reading.yaml_reader import parse_data
 from muster.mission.records import Checked, Record, findings, record, spec, specified
-from muster.mission.text_files import read_text
+from muster.mission.texts.text_files import read_text
 from muster.mission.value_types import INVALID, Choice, Fault, JsonSchema, Number, Text, shown
 from muster.mission.value_types import Path as KeyPath
-from muster.mission.yaml_reader import parse_data
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import Parameters, between_centres

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.free_region import part_around, slack_of

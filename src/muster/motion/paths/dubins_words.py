@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 
 Pose = tuple[float, float, float]
 """x, y in metres and heading in radians from east."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster import core
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
-from muster.mission.ranges import require_positive
+from muster.mission.values.arrays import Floats
+from muster.mission.values.ranges import require_positive
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.maps.raster import grid_of

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from muster import core
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace, Space
 from muster.motion.grid import Grid, Indices
 from muster.motion.maps.free_points import free

@@ -8,8 +8,8 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace, Space
 from muster.motion.maps.free_points import free
 from muster.motion.path import NoPath, Path

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.mission.arrays import Floats
-from muster.mission.ranges import require_finite_positive
+from muster.mission.values.arrays import Floats
+from muster.mission.values.ranges import require_finite_positive
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.free_region import part_around

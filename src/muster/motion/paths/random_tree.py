@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster import core
-from muster.mission.arrays import Floats
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace, Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import core_grid, without_repetitions

@@ -9,7 +9,7 @@ from typing import Any
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.a_star import A_STAR

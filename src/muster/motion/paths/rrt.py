@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.planner import Planner, blocked

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.mission.arrays import Floats
-from muster.mission.ranges import require_positive
+from muster.mission.values.arrays import Floats
+from muster.mission.values.ranges import require_positive
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.planner import Planner, blocked

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.path_finder import PathFinder

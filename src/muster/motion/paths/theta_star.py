@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import Parameters, Question, question

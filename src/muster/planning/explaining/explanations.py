@@ -17,8 +17,8 @@ from muster.allocation.work_shortfall import Shortfall
 from muster.mission.auction_book import Award
 from muster.mission.errors import Finding, ParameterError, PlanError
 from muster.mission.model import Mission
-from muster.mission.near_matches import did_you_mean
 from muster.mission.plan import Plan, Unassigned
+from muster.mission.texts.near_matches import did_you_mean
 from muster.planning.judging import admits
 from muster.verification import RouteFigures, Verdict, verify
 

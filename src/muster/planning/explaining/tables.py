@@ -9,9 +9,9 @@ from typing import Any
 from muster.allocation.problem import Problem
 from muster.allocation.remedy import Remedy
 from muster.allocation.stop import Stop
-from muster.mission.counting import counted
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.mission.texts.counting import counted
 from muster.planning.explaining.explanations import LeftOut, OneTask, left_out, one_task, require_fit
 from muster.planning.explaining.phrases import (
     award_text,

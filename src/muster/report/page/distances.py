@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.arrays import Floats
+from muster.mission.values.arrays import Floats
 
 _MOST_NUMBERS = 1_000_000  # in memory at once
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from muster.mission.model import Point
 from muster.mission.plan import Plan, Reason, Route, Unassigned
-from muster.mission.plan_reader import plan_from
+from muster.mission.reading.plan_reader import plan_from
 from muster.report.record.routes import is_over, names_ahead
 from muster.state import MissionState
 from muster.state.reasons import reasons_in_one_line

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from muster.mission.errors import Finding, InputError
-from muster.mission.from_data import mission_from
 from muster.mission.model import Mission
-from muster.mission.yaml_reader import parse_data
+from muster.mission.reading.from_data import mission_from
+from muster.mission.reading.yaml_reader import parse_data
 from muster.report.record.json_messages import grid_from
 from muster.report.record.plan_changes import ReadPlan
 from muster.report.record.recording import Floats, PlanVersion, Recording, Tracks

@@ -16,10 +16,10 @@ from typing import IO, Any, Self
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MissingExtraError
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
+from muster.mission.system.clock import Clock, SystemClock
 from muster.mission.yaml_writer import yaml_text
 from muster.report.record import json_messages
 from muster.report.record.plan_changes import PlanChanges

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from muster.mission.counting import counted
 from muster.mission.model import Robot, Task, TeamPart
+from muster.mission.texts.counting import counted
 from muster.verification.case import Case
 from muster.verification.measure import MeasuredRoute
 from muster.verification.verdict import Violation

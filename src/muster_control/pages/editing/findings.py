@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from nicegui import ui
 
-from muster.mission.counting import counted
+from muster.mission.texts.counting import counted
 from muster_control.pages.editing.draft import Checked
 
 _MOST = 30

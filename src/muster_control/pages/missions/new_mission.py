@@ -51,7 +51,7 @@ _CONVERTED = converted_suffixes()
 _ACCEPT = ",".join((*YAML_SUFFIXES, *_SITES, *_CONVERTED, ".png,.pgm,.jpg"))
 _MOST_BYTES = 16 * 2**20
 _REJECTED = "entries => emit(entries.map(entry => [entry.failedPropValidation, entry.file.name, entry.file.size]))"
-_CSV = (  # as `mission.thesis_csv` reads them
+_CSV = (  # as `mission.reading.thesis_csv` reads them
     "Tasks: index, x, y, type, actuation_cost, prerequisites; also z, duration_s, window_s, deadline_s, due_s, "
     "robots_needed.",
     "Robots, in a file with the word robots in its name: id, type, x, y, work_capacity; also z.",

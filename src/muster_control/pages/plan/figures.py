@@ -8,9 +8,9 @@ from typing import Any
 
 from nicegui import ui
 
-from muster.mission.counting import counted
 from muster.mission.plan import gap
 from muster.mission.stations import station_sign
+from muster.mission.texts.counting import counted
 
 Choose = Callable[[str, str], None]
 """Told `robot`, `task` or `station` and an id, when somebody clicks it."""

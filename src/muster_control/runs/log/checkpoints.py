@@ -7,7 +7,7 @@ import zlib
 from collections.abc import Mapping
 from typing import Any
 
-from muster.mission.clock import Clock
+from muster.mission.system.clock import Clock
 
 MOST_ENTRIES, MOST_S = 2_000, 300.0
 """Entries, and seconds of the wall clock with entries, after which a checkpoint is due."""

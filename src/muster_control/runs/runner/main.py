@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.plan_reader import plan_from
+from muster.mission.reading.plan_reader import plan_from
 from muster.mission.yaml_writer import plain
 from muster.running.begun import Begun
 from muster.running.claim_locks import robots_claimed

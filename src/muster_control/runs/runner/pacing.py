@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from muster.mission.clock import Clock
+from muster.mission.system.clock import Clock
 
 _LATE_S = 5.0
 """Seconds by which it may be late and still makes up for it."""

@@ -8,9 +8,9 @@ from dataclasses import replace
 from muster.execution import Recorder, Report, broken_off
 from muster.execution.final_state import final_states_of
 from muster.execution.fleet import Fleet
-from muster.mission.clock import Clock
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
+from muster.mission.system.clock import Clock
 from muster.running.live import Live, elsewhere, with_reported_starts
 from muster.running.run_request import OPEN_FLEET, RunRequest
 from muster.state import MissionState

@@ -8,8 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from muster.execution import RobotStatus, Status
-from muster.mission.clock import Clock, SystemClock
 from muster.mission.errors import MusterError, ParameterError
+from muster.mission.system.clock import Clock, SystemClock
 from muster.state import checkpoint_of
 from muster_control.runs.log.checkpoints import Schedule, packed_state
 from muster_control.runs.runner.log_recorder import LogRecorder

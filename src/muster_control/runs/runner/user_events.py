@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from copy import deepcopy
 from typing import Any
 
-from muster.mission.clock_times import clock_times_to_seconds
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event
 from muster.mission.records import Record
 from muster.mission.value_types import Fault
+from muster.mission.values.clock_times import clock_times_to_seconds
 
 
 def event_given(data: Mapping[str, Any], now: float, starts_at: str | None) -> Event:

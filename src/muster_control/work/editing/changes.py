@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from muster.mission.circles import SIDES, enclosing
+from muster.mission.reading.circles import SIDES, enclosing
 from muster_control.work.editing.edits import EditError, append, data_of, remove, set_value, set_values
 from muster_control.work.editing.nodes import Path
 from muster_control.work.editing.zones import add_zone

@@ -12,7 +12,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from muster.mission.errors import MissionError, MusterError
-from muster.mission.yaml_reader import parse_data
+from muster.mission.reading.yaml_reader import parse_data
 from muster.mission.yaml_writer import flow_text
 from muster_control.work.editing.nodes import Node, NodesError, Path, find, read_nodes
 

@@ -8,7 +8,7 @@ from pathlib import PurePath
 from typing import Any
 
 from muster.mission.errors import ParameterError
-from muster.mission.near_matches import did_you_mean
+from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 from muster.planning.export_formats import FORMATS, ExportOptions, altitudes_in, makes_folder, options_of
 from muster.planning.exporting import exported

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import expect
 from tests.muster_control.browser.missions_and_plan.plan_view import SLOW_MS, plan_view
 
-from muster.mission.plan_reader import plan_of
+from muster.mission.reading.plan_reader import plan_of
 from muster_control.client import Client
 
 pytestmark = pytest.mark.xdist_group("missions and plan")  # they share a server

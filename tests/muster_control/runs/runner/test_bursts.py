@@ -7,8 +7,8 @@ import pytest
 from tests.muster_control.runs.stage import Kept, performed, performed_with_crashes, require_whole
 
 import muster
-from muster.mission.clock import VirtualClock
 from muster.mission.model import Mission, Robot, Task
+from muster.mission.system.clock import VirtualClock
 from muster.state import MissionState
 from muster_control.runs.run_settings import request_of
 from muster_control.runs.runner.log_recorder import LogRecorder

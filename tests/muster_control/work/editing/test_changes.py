@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster.mission.circles import enclosing
+from muster.mission.reading.circles import enclosing
 from muster_control.work.editing import changes
 from muster_control.work.editing.edits import EditError, data_of
 

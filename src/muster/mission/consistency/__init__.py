@@ -1,0 +1,1 @@
+"""Consistency rules between the parts of a mission: ids, references, units, order of tasks and deliveries."""

@@ -1,0 +1,1 @@
+"""The installation and the operating system: extras, plug-ins, clocks, signals, and what differs between platforms."""

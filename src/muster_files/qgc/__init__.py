@@ -1,0 +1,1 @@
+"""Files of ground stations: QGroundControl plans, read and written, and way points as text, read."""
