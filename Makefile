@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: house standing demo test test-all quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-goods campaign-server campaign-faults campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
+.PHONY: house standing demo test test-all test-alone quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-goods campaign-server campaign-faults campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -28,6 +28,9 @@ test: $(VENV)/developed test-packages
 
 test-all: $(VENV)/developed test-packages
 	$(BIN)/python -m pytest -n 4 --dist loadgroup $(PYTEST_FLAGS)
+
+test-alone: $(VENV)/developed test-packages
+	@$(BIN)/python -m tools.suites.alone $(PACKAGE)
 
 quick: $(VENV)/developed
 	@$(BIN)/python -m tools.suites.quick $(if $(BASE),--base $(BASE)) $(if $(BUDGET),--budget $(BUDGET)) $(PYTEST_FLAGS)
@@ -105,6 +108,7 @@ help:
 	@echo "make demo       plan, draw and simulate a mission (DEMO_MISSION=$(DEMO_MISSION))"
 	@echo "make test       run the fast tests, and the short forms of long ones"
 	@echo "make test-all   run all tests, the long ones too"
+	@echo "make test-alone  run the fast tests of one package with its extras alone (PACKAGE=muster_files)"
 	@echo "make quick      run the fast tests that executed what has changed (BASE=COMMIT BUDGET=SECONDS)"
 	@echo "make turn       the last step of a change: raise .ci/turn and remake a tenth of the map of tests"
 	@echo "make flakes     run the fast tests five times in random order, beside two busy loops"

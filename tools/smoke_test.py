@@ -9,9 +9,13 @@ import json
 import subprocess
 import sys
 import tempfile
+from importlib.metadata import distribution
+from importlib.resources import files
+from importlib.util import find_spec
 from pathlib import Path
 
 MISSION = "31T-6R50"
+PACKAGES = ("muster", *(f"muster_{name}" for name in ("files", "physics", "team", "robots", "control", "studies")))
 
 
 def main() -> None:
@@ -31,8 +35,18 @@ def main() -> None:
         assert json.loads(_muster("verify", MISSION, str(file), "--format", "json"))["valid"]
         report = json.loads(_muster("simulate", MISSION, "--plan", str(file), "--format", "json"))
     assert len(report["tasks_done"]) == len(mission.tasks), report
+    _check_packages()
     print(f"{_muster('--version').strip()}: {plan.objective} {plan.objective_value:.2f}")
     print(f"core: {core.__file__}")
+
+
+def _check_packages() -> None:
+    """All packages are there, typed, with the module of each entry point; the extras are not needed for that."""
+    for package in PACKAGES:
+        assert (files(package) / "py.typed").is_file(), package
+    modules = {entry.module for entry in distribution("muster-robotics").entry_points}
+    assert {module.partition(".")[0] for module in modules} == set(PACKAGES)
+    assert [module for module in modules if find_spec(module) is None] == []
 
 
 def _muster(*arguments: str) -> str:

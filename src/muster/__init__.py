@@ -167,12 +167,18 @@ _MOVED = {
     "muster.client": "muster_control.client",
     "muster.comparison": "muster_studies.comparison",
     "muster.exchange": "muster_files",
+    "muster.negotiation.memory_network": "muster_team.network.memory_network",
+    "muster.negotiation.methods": "muster_team.negotiators.methods",
+    "muster.negotiation.robot_view": "muster_team.negotiators.robot_view",
     "muster.negotiation": "muster_team",
     "muster.report.film": "muster_physics.film",
     "muster.server": "muster_control",
     "muster.simulation.physics": "muster_physics",
 }
-"""The new names of packages that have moved, with all that is in them. The old names can still be imported."""
+"""The new names of packages that have moved, with all that is in them, and of documented modules that moved again.
+
+The old names can still be imported. A module stands before its package.
+"""
 
 
 class _OldNames:

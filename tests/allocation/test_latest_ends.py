@@ -13,7 +13,7 @@ from muster.allocation.latest_ends import LatestEnds
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.model import Lag
-from muster_team.participation import plan_of
+from muster_team.negotiators.participation import plan_of
 
 
 def mission_of(*tasks, robots=2, **rules):

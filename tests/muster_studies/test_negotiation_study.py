@@ -10,7 +10,7 @@ from muster.allocation.problem import Problem
 from muster.cli.main import run as muster
 from muster_studies.effort import Effort
 from muster_studies.negotiation.cost import AuctionRun, Cost, hold
-from muster_team.methods import METHODS
+from muster_team.negotiators.methods import METHODS
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -3,10 +3,10 @@
 from muster import Mission, Robot, Task
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
-from muster_team.memory_network import LinkConditions, MemoryNetwork
-from muster_team.negotiator import Negotiator
-from muster_team.participation import rules_of
-from muster_team.valuation import AuctionValuer
+from muster_team.auctions.valuation import AuctionValuer
+from muster_team.negotiators.negotiator import Negotiator
+from muster_team.negotiators.participation import rules_of
+from muster_team.network.memory_network import LinkConditions, MemoryNetwork
 
 
 def line_mission(robots=3, tasks=6, once=(), **more):

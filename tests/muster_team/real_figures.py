@@ -17,7 +17,7 @@ from tests.muster_team.real_network import RealNetwork, why_not
 
 from muster.generation.uniform import uniform_mission
 from muster.mission.yaml_writer import yaml_text
-from muster_team.keys import new_key, write_key
+from muster_team.network.keys import new_key, write_key
 
 LOSSES = (0.0, 0.1, 0.3, 0.5)
 DELAY_S, CUT_S, CUT_LOSS = 0.05, 15.0, 0.3

@@ -7,11 +7,11 @@ import muster
 from muster.allocation.auction import AUCTION, Parameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster_team.codec import Codec
-from muster_team.encryption import Seal, mission_digest
-from muster_team.members import Timeouts
-from muster_team.node import Node
-from muster_team.participation import negotiator_of
+from muster_team.membership.members import Timeouts
+from muster_team.negotiators.participation import negotiator_of
+from muster_team.network.codec import Codec
+from muster_team.network.encryption import Seal, mission_digest
+from muster_team.processes.node import Node
 
 KEY = bytes(32)
 GUARD_S = 120.0

@@ -8,9 +8,9 @@ from tests.muster_team.trials.observer import Observer
 
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
-from muster_team.negotiator import Negotiator
-from muster_team.participation import rules_of
-from muster_team.valuation import AuctionValuer
+from muster_team.auctions.valuation import AuctionValuer
+from muster_team.negotiators.negotiator import Negotiator
+from muster_team.negotiators.participation import rules_of
 
 ROBOTS = ("r_0", "r_1", "r_2")
 PROBLEM = Problem.compile(line_mission(robots=3, tasks=4, once=("0",))).ready()

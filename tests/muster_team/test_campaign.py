@@ -13,8 +13,8 @@ from tests.muster_team.trials.observer import Observer
 from tests.muster_team.trials.scenario import scenario_of
 
 from muster.allocation.problem import Problem
-from muster_team.capabilities import AGREED
-from muster_team.negotiator import Negotiator
+from muster_team.auctions.capabilities import AGREED
+from muster_team.negotiators.negotiator import Negotiator
 
 RUNS = 15
 
@@ -70,17 +70,22 @@ def timed(seed):
 
 
 PLANTED = {  # which seed finds the fault, or one soon after it, and what it is: module, right, wrong
-    "half of the team is enough": (12, "epoch_base", "len(self.robots) // 2 + 1", "(len(self.robots) + 1) // 2"),
+    "half of the team is enough": (
+        12,
+        "knowledge.epoch_base",
+        "len(self.robots) // 2 + 1",
+        "(len(self.robots) + 1) // 2",
+    ),
     "nobody need know what is begun": (
         36,
-        "owned_tasks",
+        "negotiators.owned_tasks",
         "declared.knows for declared in tell",
         "99 for declared in tell",
     ),
-    "who begins need not have said so": (15, "owned_tasks", "return said and sum", "return sum"),
-    "who has forgotten counts": (102, "participant", "Memory(knows=not self.forgot)", "Memory(knows=True)"),
-    "a clock that was set back is not noticed": (0, "identity", "if not self.may_renumber or", "if True or"),
-    "what is waived stays closed": (77, "knowledge", 'fact.kind == "waived"}', 'fact.kind == ""}'),
+    "who begins need not have said so": (15, "negotiators.owned_tasks", "return said and sum", "return sum"),
+    "who has forgotten counts": (102, "negotiators.participant", "Memory(knows=not self.forgot)", "Memory(knows=True)"),
+    "a clock that was set back is not noticed": (0, "membership.identity", "if not self.may_renumber or", "if True or"),
+    "what is waived stays closed": (77, "knowledge.facts", 'fact.kind == "waived"}', 'fact.kind == ""}'),
 }
 
 
@@ -105,29 +110,35 @@ def _with_tasks(**keys):
 
 _LATER = "None if t.deadline_s is None else t.deadline_s + 1.0"
 PLANTED_IN_TIME = {  # which run finds the fault with which seed, or soon after it, and what it is: module, right, wrong
-    "bids ignore windows": (like_the_centre, 0, "unit_sales", _SOLD, _with_tasks(window_s="()")),
-    "bids ignore deadlines": (like_the_centre, 0, "unit_sales", _SOLD, _with_tasks(deadline_s="None")),
-    "deadlines are off by one": (timed, 10, "unit_sales", _SOLD, _with_tasks(deadline_s=_LATER)),
-    "bids ignore lags": (like_the_centre, 0, "unit_sales", _SOLD, _with_tasks(lags="{}")),
-    "the worst bid wins": (like_the_centre, 0, "unit_sales", "sorted(alone, key", "sorted(alone, reverse=True, key"),
+    "bids ignore windows": (like_the_centre, 0, "auctions.unit_sales", _SOLD, _with_tasks(window_s="()")),
+    "bids ignore deadlines": (like_the_centre, 0, "auctions.unit_sales", _SOLD, _with_tasks(deadline_s="None")),
+    "deadlines are off by one": (timed, 10, "auctions.unit_sales", _SOLD, _with_tasks(deadline_s=_LATER)),
+    "bids ignore lags": (like_the_centre, 0, "auctions.unit_sales", _SOLD, _with_tasks(lags="{}")),
+    "the worst bid wins": (
+        like_the_centre,
+        0,
+        "auctions.unit_sales",
+        "sorted(alone, key",
+        "sorted(alone, reverse=True, key",
+    ),
     "a team begins when its first robot could": (
         calm,
         0,
-        "joint_statements",
+        "knowledge.joint_statements",
         "max(presence.from_s for",
         "min(presence.from_s for",
     ),
     "who learns of a begin too late begins too": (
         carried_out,
         6,
-        "joint_starts",
+        "negotiators.joint_starts",
         "if now > begin(start.from_s)",
         "if False",
     ),
     "what was lost is not told again": (
         carried_out,
         0,
-        "repairs",
+        "negotiators.repairs",
         "if message.known != known.digest and",
         "if False and",
     ),

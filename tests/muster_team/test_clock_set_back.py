@@ -3,9 +3,9 @@
 import pytest
 from tests.muster_team.networks import agree, line_mission, owners, settled_team
 
-from muster_team.effects import Notice
-from muster_team.memory_file import Kept, keeper, kept_in
-from muster_team.messages import Heartbeat, Message, Stage
+from muster_team.knowledge.effects import Notice
+from muster_team.knowledge.messages import Heartbeat, Message, Stage
+from muster_team.processes.memory_file import Kept, keeper, kept_in
 
 TEAM = {"r_0", "r_1", "r_2"}
 

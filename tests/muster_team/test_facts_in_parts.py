@@ -9,11 +9,11 @@ from tests.muster_team.networks import agree, line_mission, owners, settled_team
 from muster import Task
 from muster.allocation.problem import Problem
 from muster.mission.errors import MissionError
-from muster_team.epoch_base import agreed
-from muster_team.knowledge import AT_ONCE
-from muster_team.messages import Declaration, Fact
-from muster_team.new_tasks import content_of
-from muster_team.participation import rules_of
+from muster_team.knowledge.epoch_base import agreed
+from muster_team.knowledge.facts import AT_ONCE
+from muster_team.knowledge.messages import Declaration, Fact
+from muster_team.knowledge.new_tasks import content_of
+from muster_team.negotiators.participation import rules_of
 
 RULES = rules_of(Problem.compile(line_mission(robots=2, tasks=1)))
 

@@ -12,11 +12,11 @@ pytest.importorskip("msgpack", reason="the extra `net` is not installed")
 from tests.muster_team.networks import agree, line_mission, network, owners
 
 from muster import Task
-from muster_team.codec import Codec
-from muster_team.effects import Outgoing
-from muster_team.messages import Claim, Fact, Heartbeat, Message, RoundBids, Sold, Stage
-from muster_team.negotiator import Negotiator
-from muster_team.new_tasks import content_of
+from muster_team.knowledge.effects import Outgoing
+from muster_team.knowledge.messages import Claim, Fact, Heartbeat, Message, RoundBids, Sold, Stage
+from muster_team.knowledge.new_tasks import content_of
+from muster_team.negotiators.negotiator import Negotiator
+from muster_team.network.codec import Codec
 
 MISSION = line_mission(robots=5, tasks=15)
 TASKS = [task.id for task in MISSION.tasks]

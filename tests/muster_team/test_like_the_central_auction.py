@@ -13,8 +13,8 @@ from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.library import mission_names, mission_path
 from muster.mission.errors import MissingExtraError, ParameterError
-from muster_team.capabilities import AGREED
-from muster_team.participation import plan_of
+from muster_team.auctions.capabilities import AGREED
+from muster_team.negotiators.participation import plan_of
 
 OTHERS = tuple(product(WINNERS, PLACEMENTS))
 

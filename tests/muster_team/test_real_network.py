@@ -11,7 +11,7 @@ from tests.muster_team.real_network import RealNetwork, why_not
 from muster import Mission, Robot, Task, verify
 from muster.mission.reading.plan_reader import read_plan
 from muster.mission.yaml_writer import yaml_text
-from muster_team.keys import new_key, write_key
+from muster_team.network.keys import new_key, write_key
 
 TASKS = 12
 TEAMS = pytest.mark.parametrize("robots", [2, pytest.param(6, marks=pytest.mark.long)])

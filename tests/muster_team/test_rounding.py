@@ -10,8 +10,8 @@ from tests.muster_team.networks import agree, owners
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.generation.uniform import uniform_mission
-from muster_team.memory_network import LinkConditions, MemoryNetwork
-from muster_team.participation import negotiator_of
+from muster_team.negotiators.participation import negotiator_of
+from muster_team.network.memory_network import LinkConditions, MemoryNetwork
 
 
 def rounded_otherwise(mission, random):

@@ -2,8 +2,8 @@
 
 from tests.muster_team.simulated_figures import suspicion
 
-from muster_team.members import Timeouts
-from muster_team.memory_network import TICK_S
+from muster_team.membership.members import Timeouts
+from muster_team.network.memory_network import TICK_S
 
 
 def expected(loss, heartbeats):

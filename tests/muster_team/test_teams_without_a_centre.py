@@ -12,7 +12,7 @@ from muster.allocation.auction import AUCTION, Parameters
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.verification import verify
-from muster_team.participation import plan_of
+from muster_team.negotiators.participation import plan_of
 
 
 def lifting(robots=4, **more):

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import pytest
 from tests.suites import SHARES, chosen, function_id, share_of, shuffle
 from tools.suites import change, ci, executed, quick, touched
+from tools.suites.alone import EXTRAS
 from tools.suites.campaigns import CAMPAIGNS
 from tools.suites.executed import Executed
 
@@ -178,6 +179,11 @@ class TestCI:
         assert {campaign.target for campaign in CAMPAIGNS} == targets
         executed = [step.name for turn in range(3, 13) for step in ci.steps(turn, [])]
         assert all(executed.count(name) == len([one for one in CAMPAIGNS if one.target == name]) for name in targets)
+
+    def test_ten_turns_run_the_tests_of_each_package_alone(self):
+        commands = [step.command for turn in range(3, 13) for step in ci.steps(turn, [])]
+        alone = [command[2] for command in commands if command[1] == "test-alone"]
+        assert sorted(alone) == sorted(f"PACKAGE={package}" for package in EXTRAS)
 
     def test_a_campaign_goes_on_with_the_seeds_that_follow(self):
         of_turn = [CAMPAIGNS[0].command(turn)[2] for turn in (0, 10, 170)]

@@ -15,6 +15,7 @@ from zlib import crc32
 from tests.suites import SHARES
 
 from tools.docs_check.__main__ import pages
+from tools.suites.alone import EXTRAS
 from tools.suites.campaigns import CAMPAIGNS
 from tools.suites.change import ROOT, TURN, base_of_submission, changed_files, git, raises, turn
 from tools.suites.executed import read_map
@@ -52,6 +53,10 @@ def steps(number: int, changed: list[str] | None) -> Iterator[Step]:
     for campaign in CAMPAIGNS:
         if changed is None or campaign.turn == number % SHARES:
             yield Step(campaign.target, f"turn {campaign.turn} of ten", campaign.command(number))
+    for turn_of_package, package in enumerate(EXTRAS):
+        if changed is None or turn_of_package == number % SHARES:
+            why = f"turn {turn_of_package} of ten"
+            yield Step(f"{package} alone", why, ["make", "test-alone", f"PACKAGE={package}"])
     yield _documents(number, changed)
     if changed is None or _touches(changed, _SITE) or number % SHARES == _SITE_TURN:
         yield Step("site", "documents have changed, or it is the site's turn", ["make", "docs"])

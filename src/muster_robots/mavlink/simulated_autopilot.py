@@ -14,8 +14,8 @@ from dataclasses import fields
 from muster.mission.errors import ParameterError
 from muster.mission.model import Origin
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
-from muster_robots.mavlink.simulated_drone import SimulatedAutopilot
-from muster_robots.mavlink.simulated_faults import Faults
+from muster_robots.mavlink.simulated.drone import SimulatedAutopilot
+from muster_robots.mavlink.simulated.faults import Faults
 
 _STEP_S = 0.02
 _MOST_S = 0.2

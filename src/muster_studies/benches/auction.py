@@ -16,10 +16,10 @@ from muster.allocation.problem import Problem
 from muster.generation.uniform import uniform_mission
 from muster.mission.errors import MusterError
 from muster_studies.benches.measurement import Measurement
-from muster_team.keys import new_key
-from muster_team.process_reports import TeamSetup
-from muster_team.team import Team, timeouts_for
-from muster_team.transport import TRANSPORTS
+from muster_team.network.keys import new_key
+from muster_team.network.transport import TRANSPORTS
+from muster_team.processes.process_reports import TeamSetup
+from muster_team.processes.team import Team, timeouts_for
 
 ROBOTS, TASKS, GUARD_S = 20, 50, 120.0
 VICTIMS, KILLED_IN_ROUND = ("r_0", "r_7", "r_13"), 10

@@ -15,11 +15,11 @@ from muster.mission.model import Mission
 from muster.verification import verify
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table
-from muster_team.codec import Codec
-from muster_team.encryption import OVERHEAD
-from muster_team.memory_network import LinkConditions, MemoryNetwork
-from muster_team.methods import METHODS
-from muster_team.robot_view import view_of
+from muster_team.negotiators.methods import METHODS
+from muster_team.negotiators.robot_view import view_of
+from muster_team.network.codec import Codec
+from muster_team.network.encryption import OVERHEAD
+from muster_team.network.memory_network import LinkConditions, MemoryNetwork
 
 TASKS_A_ROBOT = 2.5
 DELAY_S = 0.05

@@ -33,7 +33,7 @@ from muster_team.runs.negotiation import Negotiation
 
 if TYPE_CHECKING:
     from muster.allocation.problem import Problem
-    from muster_team.methods import Method
+    from muster_team.negotiators.methods import Method
 
 _FILE = click.Path(path_type=Path)
 _OF_ONE_ROBOT = ("listen", "connect", "multicast", "memory", "key_file")
@@ -87,8 +87,8 @@ def command(
     the same MISSION and key, one process on each robot's computer.
     """
     from muster.allocation.problem import Problem
-    from muster_team.capabilities import refuse_what_is_not_agreed
-    from muster_team.methods import method_named
+    from muster_team.auctions.capabilities import refuse_what_is_not_agreed
+    from muster_team.negotiators.methods import method_named
 
     _check_together(others)
     require_writable(output, (book, plot, gantt), mission.files, ())
@@ -153,7 +153,7 @@ def _write_views(folder: Path, plans: dict[str, Plan]) -> None:
 def _new_key(ctx: click.Context, _: click.Parameter, file: Path | None) -> None:
     if file is None or ctx.resilient_parsing:
         return
-    from muster_team.keys import new_key, write_key
+    from muster_team.network.keys import new_key, write_key
 
     write_key(file, new_key())
     click.echo(f"{file}: a new key; give every robot a copy, and nobody else")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from muster_team.robot_view import View
+    from muster_team.negotiators.robot_view import View
 
 
 @dataclass(frozen=True)

@@ -13,15 +13,15 @@ from muster.allocation.problem import Problem
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.texts.near_matches import did_you_mean
 from muster_team.cli.auction_result import Agreement, by_kind
-from muster_team.keys import read_key
-from muster_team.memory_file import kept_of
-from muster_team.methods import Method
-from muster_team.mission_digest import mission_digest
-from muster_team.negotiator import Negotiator
-from muster_team.node import NodeStatus
-from muster_team.node_factory import node_of
-from muster_team.one_robot import StayLimits, new_incarnation, take_part
-from muster_team.transport import Transport
+from muster_team.negotiators.methods import Method
+from muster_team.negotiators.negotiator import Negotiator
+from muster_team.network.keys import read_key
+from muster_team.network.mission_digest import mission_digest
+from muster_team.network.transport import Transport
+from muster_team.processes.memory_file import kept_of
+from muster_team.processes.node import NodeStatus
+from muster_team.processes.node_factory import node_of
+from muster_team.processes.one_robot import StayLimits, new_incarnation, take_part
 
 _ANYWHERE = "0.0.0.0"  # noqa: S104 - the others are on other machines
 _PORT = 7783
@@ -122,7 +122,7 @@ def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Tra
         return _zenoh(problem.mission.name or "mission", options["robot"], connect, listen, options["wait"])
     if (connect is None) == (multicast is None):
         raise ParameterError("--connect or --multicast: expected one of them with --robot")
-    from muster_team.udp import UdpTransport
+    from muster_team.network.udp import UdpTransport
 
     if multicast is not None:
         if listen is not None:
@@ -134,7 +134,7 @@ def _transport(problem: Problem, transport: str, options: dict[str, Any]) -> Tra
 
 def _zenoh(mission: str, robot: str, connect: str | None, listen: str | None, wait_s: float) -> Transport:
     """A Zenoh session; a robot that only connects waits for another robot."""
-    from muster_team.zenoh_transport import ZenohTransport
+    from muster_team.network.zenoh_transport import ZenohTransport
 
     for option, text in (("--connect", connect), ("--listen", listen)):
         for endpoint in _listed(text):

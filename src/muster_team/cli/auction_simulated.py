@@ -10,9 +10,9 @@ import click
 from muster.allocation.problem import Problem
 from muster.mission.errors import MusterError, ParameterError
 from muster_team.cli.auction_result import Agreement
-from muster_team.memory_network import LinkConditions, MemoryNetwork
-from muster_team.methods import Method
-from muster_team.robot_view import view_of
+from muster_team.negotiators.methods import Method
+from muster_team.negotiators.robot_view import view_of
+from muster_team.network.memory_network import LinkConditions, MemoryNetwork
 
 
 def agree_in_memory(

@@ -9,9 +9,9 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from muster.allocation.problem import Problem
-from muster_team.messages import RoundBids, Sold
-from muster_team.node import NodeStatus
-from muster_team.team import Team
+from muster_team.knowledge.messages import RoundBids, Sold
+from muster_team.processes.node import NodeStatus
+from muster_team.processes.team import Team
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

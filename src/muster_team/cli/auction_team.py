@@ -14,11 +14,11 @@ from muster.mission.errors import MusterError
 from muster.mission.texts.counting import counted
 from muster_team.cli.auction_result import Agreement, by_kind
 from muster_team.cli.auction_table import auction_table
-from muster_team.keys import new_key
-from muster_team.methods import Method
-from muster_team.process_reports import TeamSetup
-from muster_team.robot_view import View
-from muster_team.team import Team, timeouts_for
+from muster_team.negotiators.methods import Method
+from muster_team.negotiators.robot_view import View
+from muster_team.network.keys import new_key
+from muster_team.processes.process_reports import TeamSetup
+from muster_team.processes.team import Team, timeouts_for
 
 _LOOK_S = 0.05
 

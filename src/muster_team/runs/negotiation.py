@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from muster.mission.records import record, spec
 from muster.mission.value_types import Choice, Text
 from muster.running.coordination import Coordination
-from muster_team.transport import TRANSPORTS
+from muster_team.network.transport import TRANSPORTS
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
@@ -41,7 +41,7 @@ class Negotiation(Coordination):
     def terms(self) -> Any:
         """The parameters of the method's allocator, which all robots share."""
         from muster.allocation.allocator import make_parameters
-        from muster_team.methods import method_named
+        from muster_team.negotiators.methods import method_named
 
         allocator = method_named(self.method).allocator
         if self.params is None or isinstance(self.params, Mapping):
@@ -50,8 +50,8 @@ class Negotiation(Coordination):
 
     def refuse_mission(self, mission: Mission) -> None:
         """See `Coordination`."""
-        from muster_team.capabilities import refuse_mission
-        from muster_team.methods import method_named
+        from muster_team.auctions.capabilities import refuse_mission
+        from muster_team.negotiators.methods import method_named
 
         refuse_mission(mission, method_named(self.method).can)
         _ = self.terms

@@ -15,12 +15,12 @@ from muster.running.camera_search import CameraSearch
 from muster.running.state_estimation import RobotsInWorld
 from muster.simulation import SimulatedWorld
 from muster.state import OtherEvent
-from muster_team.messages import Stage
-from muster_team.methods import method_named
-from muster_team.process_reports import TeamSetup
+from muster_team.knowledge.messages import Stage
+from muster_team.negotiators.methods import method_named
+from muster_team.processes.process_reports import TeamSetup
+from muster_team.processes.team import Team
 from muster_team.runs.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
 from muster_team.runs.team_log import TeamLog
-from muster_team.team import Team
 
 _STEP_S = 0.05
 """The real time between two steps, seconds."""

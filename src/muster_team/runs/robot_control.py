@@ -21,12 +21,12 @@ from muster.motion.port import RobotPort
 from muster.state import OtherEvent
 from muster.state.task_events import MISSED, Ends, TaskRefused
 from muster.state.task_ledger import moved
-from muster_team.capabilities import refuse_once_together
-from muster_team.epoch_base import tasks_added
-from muster_team.knowledge import deeds, in_order
-from muster_team.messages import Fact
-from muster_team.negotiator import Negotiator
-from muster_team.new_tasks import content_of, task_of
+from muster_team.auctions.capabilities import refuse_once_together
+from muster_team.knowledge.epoch_base import tasks_added
+from muster_team.knowledge.facts import deeds, in_order
+from muster_team.knowledge.messages import Fact
+from muster_team.knowledge.new_tasks import content_of, task_of
+from muster_team.negotiators.negotiator import Negotiator
 
 NOTICE_HEARTBEATS = 3.0
 """The time before a joint begin in which all have to learn of it, in heartbeats."""

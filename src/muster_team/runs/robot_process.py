@@ -8,11 +8,11 @@ from queue import Empty
 
 from muster.mission.model import Event
 from muster.motion.port import Telemetry, Waypoint
-from muster_team.node import Node
-from muster_team.process_reports import Ready
+from muster_team.processes.node import Node
+from muster_team.processes.process_reports import Ready
+from muster_team.processes.team_process import ProcessContext, ProgressReporter, StarterCommands
 from muster_team.runs.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
 from muster_team.runs.robot_control import RobotControl
-from muster_team.team_process import ProcessContext, ProgressReporter, StarterCommands
 
 _STEP_S = 0.02
 """The longest time between two looks at the body's state, seconds."""

@@ -20,12 +20,12 @@ from muster.running.observed_run import ObservedRun
 from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.state_estimation import EstimatedWorld, with_state_estimation
 from muster.traffic.names import RESERVE
-from muster_team.keys import new_key
-from muster_team.process_reports import TeamSetup
+from muster_team.network.keys import new_key
+from muster_team.processes.process_reports import TeamSetup
+from muster_team.processes.team import Team, timeouts_for
 from muster_team.runs.robot_bodies import MOST_SPEED, RobotBodies
 from muster_team.runs.robot_process import run_robot_process
 from muster_team.runs.team_log import TeamLog
-from muster_team.team import Team, timeouts_for
 
 
 def negotiate_and_carry_out(

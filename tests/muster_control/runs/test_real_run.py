@@ -9,12 +9,15 @@ from collections import Counter
 import pytest
 from tests.muster_control.runs.process import gone, serving, until
 from tests.muster_control.runs.store import planned
-from tests.muster_robots.mavlink.drones import ORIGIN
 
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster_control.store.store import Store
+
+pytest.importorskip("pymavlink", reason="the extra `mavlink` is not installed")
+from tests.muster_robots.mavlink.drones import ORIGIN
+
 from muster_robots.mavlink.dialect import mavlink
-from muster_robots.mavlink.simulated_earth import origin_at
+from muster_robots.mavlink.simulated.earth import origin_at
 
 ONCE = {"across_partition": "at-most-once"}
 

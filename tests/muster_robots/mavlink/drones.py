@@ -10,9 +10,9 @@ from muster.running.live import carry_out_live
 from muster_robots.fleet_settings import FlightSettings
 from muster_robots.mavlink import MavlinkFleet
 from muster_robots.mavlink.autopilots import PX4
-from muster_robots.mavlink.simulated_drone import SimulatedAutopilot
-from muster_robots.mavlink.simulated_earth import origin_at
-from muster_robots.mavlink.simulated_faults import Faults
+from muster_robots.mavlink.simulated.drone import SimulatedAutopilot
+from muster_robots.mavlink.simulated.earth import origin_at
+from muster_robots.mavlink.simulated.faults import Faults
 
 ORIGIN = Origin(lat_deg=35.53, lon_deg=24.06, alt_m=100.0)
 

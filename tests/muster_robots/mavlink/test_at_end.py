@@ -11,7 +11,7 @@ from muster.mission.model import Task
 from muster.running.live import carry_out_live
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
 from muster_robots.mavlink.faults import Kind
-from muster_robots.mavlink.simulated_faults import Faults
+from muster_robots.mavlink.simulated.faults import Faults
 
 KINDS = pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
 FAR = (Task(id="t_0", position=(100.0, 0.0, 10.0)), Task(id="t_1", position=(100.0, 8.0, 10.0)))

@@ -12,7 +12,7 @@ from muster.mission.model import Task
 from muster.running.live import carry_out_live
 from muster_robots.mavlink import Kind
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
-from muster_robots.mavlink.simulated_faults import Faults
+from muster_robots.mavlink.simulated.faults import Faults
 
 PAGE = Path(__file__).parents[3] / "docs" / "mavlink.md"
 FAR = tuple(Task(id=f"t_{k}", position=(30.0, 6.0 * k, 10.0)) for k in range(2))

@@ -15,7 +15,7 @@ from muster_robots.fleet_settings import FlightSettings
 from muster_robots.mavlink import Kind, MavlinkFleet
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
 from muster_robots.mavlink.dialect import Codec
-from muster_robots.mavlink.simulated_faults import Faults
+from muster_robots.mavlink.simulated.faults import Faults
 
 KINDS = pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
 

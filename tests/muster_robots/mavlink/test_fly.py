@@ -20,10 +20,10 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Origin
 from muster.planning.request import Request
 from muster_robots.mavlink.autopilots import PX4
+from muster_robots.mavlink.simulated.drone import SimulatedAutopilot
+from muster_robots.mavlink.simulated.earth import origin_at
+from muster_robots.mavlink.simulated.faults import Faults
 from muster_robots.mavlink.simulated_autopilot import faults_of, serve
-from muster_robots.mavlink.simulated_drone import SimulatedAutopilot
-from muster_robots.mavlink.simulated_earth import origin_at
-from muster_robots.mavlink.simulated_faults import Faults
 
 ORIGIN = Origin(lat_deg=35.53, lon_deg=24.06)
 MISSION = """

@@ -18,8 +18,8 @@ from muster_robots.mavlink import MavlinkFleet
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
 from muster_robots.mavlink.dialect import Codec
 from muster_robots.mavlink.endpoints import Endpoint, endpoint_of, line_to
-from muster_robots.mavlink.simulated_drone import SimulatedAutopilot
-from muster_robots.mavlink.simulated_faults import Faults
+from muster_robots.mavlink.simulated.drone import SimulatedAutopilot
+from muster_robots.mavlink.simulated.faults import Faults
 
 
 class Router(Sky):

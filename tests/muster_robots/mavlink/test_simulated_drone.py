@@ -9,8 +9,8 @@ from muster.mission.errors import ParameterError
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
 from muster_robots.mavlink.dialect import Codec, mavlink
 from muster_robots.mavlink.frames import GlobalFrame
-from muster_robots.mavlink.simulated_drone import SimulatedAutopilot
-from muster_robots.mavlink.simulated_earth import degrees_of, ned_of, origin_at
+from muster_robots.mavlink.simulated.drone import SimulatedAutopilot
+from muster_robots.mavlink.simulated.earth import degrees_of, ned_of, origin_at
 
 # Radii of curvature of WGS84 at a latitude, metres: along a meridian, and of a parallel.
 A, E2 = 6378137.0, 0.00669437999014

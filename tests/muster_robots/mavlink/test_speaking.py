@@ -11,8 +11,8 @@ from muster.motion.port import Waypoint
 from muster_robots.fleet_settings import FlightSettings
 from muster_robots.mavlink import MavlinkFleet
 from muster_robots.mavlink.autopilots import PX4
+from muster_robots.mavlink.simulated.drone import SimulatedAutopilot
 from muster_robots.mavlink.simulated_autopilot import serve
-from muster_robots.mavlink.simulated_drone import SimulatedAutopilot
 
 
 @pytest.fixture

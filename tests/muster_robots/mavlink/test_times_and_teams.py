@@ -10,7 +10,7 @@ import muster
 from muster.mission.model import Rules
 from muster.running.live import carry_out_live
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
-from muster_robots.mavlink.simulated_faults import Faults
+from muster_robots.mavlink.simulated.faults import Faults
 
 OPENS_S = 40.0
 TASKS = tasks_of(OPENS_S, side=10.0, height=(10.0,))

@@ -13,7 +13,7 @@ from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.verification import verify
-from muster_team.participation import plan_of
+from muster_team.negotiators.participation import plan_of
 from muster_team.runs.robot_control import LATENESS
 
 AGREE_S = 60.0

@@ -7,7 +7,7 @@ from types import CodeType, FunctionType, ModuleType
 
 
 def plant(monkeypatch, name, right, wrong):
-    """Let the functions of a module of `muster_team` do what they did if this line of it were another."""
+    """Let the functions of a module (by its path in `muster_team`) do what they did if this line of it were another."""
     module = import_module(f"muster_team.{name}")
     source = inspect.getsource(module)
     assert source.count(right) == 1, right

@@ -5,8 +5,8 @@ from collections import Counter
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.simulation import KinematicWorld
-from muster_team.memory_network import LinkConditions, MemoryNetwork
-from muster_team.participation import negotiator_of
+from muster_team.negotiators.participation import negotiator_of
+from muster_team.network.memory_network import LinkConditions, MemoryNetwork
 from muster_team.runs.robot_control import RobotControl
 
 LOOK_S = 0.2

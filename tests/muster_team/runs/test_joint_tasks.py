@@ -9,8 +9,8 @@ from tests.muster_team.runs.simulated_team import SimulatedTeam
 
 from muster import Mission, Robot, Task
 from muster.mission.model import TeamPart
-from muster_team.joint_statements import Presence, attempt_of
-from muster_team.messages import Fact
+from muster_team.knowledge.joint_statements import Presence, attempt_of
+from muster_team.knowledge.messages import Fact
 
 LONG_S = 600.0
 

@@ -11,7 +11,7 @@ from muster.execution.record import NoObserver
 from muster.mission.model import MovedTask
 from muster.running.state_estimation import with_state_estimation
 from muster.simulation import NO_NOISE, KinematicWorld, Noise
-from muster_team.messages import Stage
+from muster_team.knowledge.messages import Stage
 from muster_team.runs.pipe_messages import BodyState, OperatorEvent, WorkReport
 from muster_team.runs.robot_bodies import RobotBodies
 from muster_team.runs.simulation import setup_of

@@ -8,9 +8,9 @@ from tests.muster_team.runs.simulated_team import SimulatedTeam
 from muster import Event, Mission, Robot, Task
 from muster.mission.model import Lag, MovedTask
 from muster.state import OtherEvent
-from muster_team.messages import Fact, Message, Stage
-from muster_team.new_tasks import content_of
-from muster_team.participation import plan_of
+from muster_team.knowledge.messages import Fact, Message, Stage
+from muster_team.knowledge.new_tasks import content_of
+from muster_team.negotiators.participation import plan_of
 
 LONG_S = 600.0
 

@@ -6,7 +6,7 @@ from muster import Mission, Robot, Task
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.simulation import KinematicWorld
-from muster_team.participation import negotiator_of
+from muster_team.negotiators.participation import negotiator_of
 from muster_team.runs.pipe_messages import BodyState, SteerCommand
 from muster_team.runs.robot_process import RobotWorker
 

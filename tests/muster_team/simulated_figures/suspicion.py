@@ -15,8 +15,8 @@ from statistics import NormalDist, fmean, stdev
 
 from tests.muster_team.simulated_figures.teams import DELAY_S, all_agree, team, time_until
 
-from muster_team.members import Timeouts
-from muster_team.memory_network import TICK_S, LinkConditions, MemoryNetwork
+from muster_team.membership.members import Timeouts
+from muster_team.network.memory_network import TICK_S, LinkConditions, MemoryNetwork
 
 BIASED_LOSS = 0.95
 """The loss while silence is provoked; sixteen words in a row are lost in 4 of 9 trials."""

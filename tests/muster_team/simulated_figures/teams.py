@@ -8,9 +8,9 @@ from random import Random
 from muster.allocation.auction import Parameters
 from muster.allocation.problem import Problem
 from muster.generation.uniform import uniform_mission
-from muster_team.memory_network import LinkConditions, MemoryNetwork
-from muster_team.negotiator import Negotiator
-from muster_team.participation import negotiator_of
+from muster_team.negotiators.negotiator import Negotiator
+from muster_team.negotiators.participation import negotiator_of
+from muster_team.network.memory_network import LinkConditions, MemoryNetwork
 
 DELAY_S = 0.05
 END_S = 600.0

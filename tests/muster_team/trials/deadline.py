@@ -15,9 +15,9 @@ from collections.abc import Collection, Sequence
 from tests.muster_team.trials.faults import Links
 from tests.muster_team.trials.scenario import Scenario
 
-from muster_team.members import FAR
-from muster_team.memory_network import TICK_S
-from muster_team.negotiator import Negotiator
+from muster_team.membership.members import FAR
+from muster_team.negotiators.negotiator import Negotiator
+from muster_team.network.memory_network import TICK_S
 
 OTHER_WORDS = 3
 """Declarations, agreement and permanent facts: each takes as long as a round."""

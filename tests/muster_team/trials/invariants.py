@@ -12,14 +12,14 @@ from muster.allocation.problem import Problem
 from muster.mission.model import Mission, Task
 from muster.mission.plan import Plan, Route
 from muster.verification import verify
-from muster_team.epoch import opening_of
-from muster_team.knowledge import in_order
-from muster_team.messages import Fact, RoundBids
-from muster_team.methods import METHODS
-from muster_team.negotiator import Negotiator
-from muster_team.new_tasks import task_of
-from muster_team.participation import rules_of
-from muster_team.valuation import Valuer
+from muster_team.auctions.epoch import opening_of
+from muster_team.auctions.valuation import Valuer
+from muster_team.knowledge.facts import in_order
+from muster_team.knowledge.messages import Fact, RoundBids
+from muster_team.knowledge.new_tasks import task_of
+from muster_team.negotiators.methods import METHODS
+from muster_team.negotiators.negotiator import Negotiator
+from muster_team.negotiators.participation import rules_of
 
 
 class Invariants:

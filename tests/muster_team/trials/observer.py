@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from muster_team.negotiator import Negotiator
+from muster_team.negotiators.negotiator import Negotiator
 
 OWNED_TWICE = "owned twice by robots that have not lost each other"
 BEGUN_TWICE = "begun twice by robots that have not lost each other"

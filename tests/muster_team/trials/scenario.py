@@ -16,8 +16,8 @@ from muster.allocation import consensus_bundle
 from muster.allocation.auction import Parameters
 from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.mission.model import Mission
-from muster_team.members import Timeouts
-from muster_team.memory_network import LinkConditions
+from muster_team.membership.members import Timeouts
+from muster_team.network.memory_network import LinkConditions
 
 MOVING_PARTITIONS = 0.3
 """The share of scenarios with moving partitions."""

@@ -15,12 +15,12 @@ from tests.muster_team.trials.scenario import Scenario, scenario_of
 
 from muster.allocation.problem import Problem
 from muster.mission.errors import MissionError, ParameterError
-from muster_team.effects import Memory
-from muster_team.memory_network import MemoryNetwork
-from muster_team.messages import Claim
-from muster_team.methods import METHODS
-from muster_team.negotiator import Negotiator
-from muster_team.participation import rules_of
+from muster_team.knowledge.effects import Memory
+from muster_team.knowledge.messages import Claim
+from muster_team.negotiators.methods import METHODS
+from muster_team.negotiators.negotiator import Negotiator
+from muster_team.negotiators.participation import rules_of
+from muster_team.network.memory_network import MemoryNetwork
 
 LONGEST_S = 120.0
 """The time limit of agreement after the last incident, seconds of virtual time; `deadline` has the stricter one."""

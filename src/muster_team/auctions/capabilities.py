@@ -1,0 +1,72 @@
+"""What rules of time, teams and relations robots can agree on without a centre; missions with others are refused."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from muster.allocation.capabilities import FOR_GOOD, those_that_can
+from muster.allocation.problem import Problem
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission, Task
+from muster_team.knowledge.epoch_base import joint_among
+
+AGREED = FOR_GOOD - {"load", "battery"}
+"""What the auction agrees on: without a centre nobody shares out the slots of stations, or knows what lies where."""
+
+
+def refuse_what_is_not_agreed(problem: Problem, can: frozenset[str]) -> None:
+    """Refuse a problem with rules that robots cannot keep without a centre, by a method that keeps some of them.
+
+    Raises
+    ------
+    ParameterError
+        with the keys, their tasks or robots, and what can do all that the problem asks for.
+    """
+    asked = problem.asked
+    lacking = [f"{where} ({word})" for word, where in asked.items() if word not in can]
+    if lacking:
+        method = ["the method auction"] if asked.keys() <= AGREED else []
+        able = " or ".join([*method, f"a plan of {' or '.join(those_that_can(asked)) or 'an allocator that can'}"])
+        raise ParameterError(f"robots without a centre cannot agree on {'; '.join(lacking)}; expected {able}")
+
+
+def refuse_mission(mission: Mission, can: frozenset[str]) -> None:
+    """Refuse a mission to be carried out as `refuse_what_is_not_agreed`, also for what its events bring.
+
+    Parameters
+    ----------
+    can
+        what the method agrees on.
+
+    Raises
+    ------
+    ParameterError
+        as there.
+    """
+    new = [event.new_task for event in mission.events if event.new_task is not None]
+    whole = mission.at_once(robots=mission.all_robots, tasks=(*mission.tasks, *new))
+    problem = Problem.compile(whole)
+    refuse_what_is_not_agreed(problem, can)
+    refuse_once_together(problem.tasks, (problem.holds("team"), problem.holds("relation")))
+
+
+def refuse_once_together(tasks: Sequence[Task], tied: tuple[bool, bool]) -> None:
+    """Refuse tasks that several robots begin and that must not be begun twice: a team begins again after a fault.
+
+    Parameters
+    ----------
+    tied
+        whether teams, and whether relations, hold.
+
+    Raises
+    ------
+    ParameterError
+        with the tasks.
+    """
+    joint = joint_among(tasks, tied)
+    once = [task.id for task in tasks if task.id in joint and task.across_partition == "at-most-once"]
+    if once:
+        raise ParameterError(
+            f"across_partition: at-most-once of {', '.join(once)}; expected at-least-once for tasks that several "
+            "robots begin together without a centre, as they begin again when one of them fails"
+        )

@@ -1,0 +1,90 @@
+"""The outputs of a negotiator for its process: messages to send, notices, the memory to store, message counts."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+from muster_team.knowledge.messages import Claim, Fact, Message
+
+
+@dataclass(frozen=True, slots=True)
+class Outgoing:
+    """A message and the robot that it is for; None: all robots."""
+
+    message: Message
+    to: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """Something that a robot noticed.
+
+    Parameters
+    ----------
+    kind
+        "silent": robots no longer take part. "back": robots take part again. "restarted": a robot has restarted.
+        "unresponsive": a robot is heard but delays the others, and is excluded. "rival": another process uses this
+        robot's id. "renumbered": this robot has taken a higher incarnation, as the others knew a later one than its
+        clock gave it. "dropped": the robot has lost a task that it owned, as another robot owns it or it cannot be done
+        any more. "twice": these robots have all begun or done the task.
+    robots, task
+        the robots and the task concerned; "" without a task.
+    """
+
+    kind: str
+    robots: tuple[str, ...]
+    task: str = ""
+
+
+class Notices(list[Notice]):
+    """The notices of one robot, in order."""
+
+    def tell(self, kind: str, robots: Collection[str]) -> None:
+        """Add one notice about these robots, unless there are none."""
+        if robots:
+            self.append(Notice(kind, tuple(robots)))
+
+    def tell_each(self, kind: str, robots: Collection[str]) -> None:
+        self.extend(Notice(kind, (robot,)) for robot in robots)
+
+    def tell_twice(self, twice: Mapping[str, tuple[str, ...]]) -> None:
+        """Add a notice for each task that several robots have begun or done, once."""
+        for happening in (Notice("twice", robots, task) for task, robots in twice.items()):
+            if happening not in self:
+                self.append(happening)
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """What a robot stores to continue after a restart.
+
+    Parameters
+    ----------
+    claims, facts
+        the tasks that it owns, and all facts that it knows.
+    epoch
+        the last epoch that it has entered; it never declares in that epoch again.
+    knows
+        whether it knows everything that it has ever stated.
+    refused
+        tasks for which it does not bid.
+    reserved
+        the facts by which it has announced that it is going to begin at-most-once tasks.
+    """
+
+    claims: tuple[Claim, ...] = ()
+    facts: tuple[Fact, ...] = ()
+    epoch: int = 0
+    knows: bool = True
+    refused: frozenset[str] = frozenset()
+    reserved: tuple[Fact, ...] = ()
+
+
+@dataclass
+class Counts:
+    """Numbers of messages sent: with news of the sender, repairs of what others lacked, idle heartbeats."""
+
+    news: int = 0
+    repairs: int = 0
+    heartbeats: int = 0

@@ -1,0 +1,81 @@
+"""The methods by which robots agree without a central auctioneer, by name. All use the same protocol and command."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from muster.allocation.allocator import Allocator
+from muster.allocation.auction import AUCTION
+from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE
+from muster.allocation.problem import Problem
+from muster.mission.errors import ParameterError
+from muster.mission.plan import Plan
+from muster.mission.texts.near_matches import did_you_mean
+from muster_team.auctions.bundles import BundleValuer
+from muster_team.auctions.valuation import AuctionValuer
+from muster_team.negotiators.negotiator import Negotiator
+from muster_team.negotiators.participation import bundler_of, negotiator_of, plan_of_bundles, plan_of_view
+from muster_team.negotiators.robot_view import View
+
+
+@dataclass(frozen=True, kw_only=True)
+class Method:
+    """A method of agreement.
+
+    Parameters
+    ----------
+    name, summary
+        for the command.
+    allocator
+        the same method in one process; robots share its parameters.
+    negotiator
+        makes a robot's negotiator, as `participation.negotiator_of`.
+    plan
+        makes the plan of a view, as `participation.plan_of_view`.
+    can
+        what rules of time, teams and relations it agrees on.
+    """
+
+    name: str
+    summary: str
+    allocator: Allocator
+    negotiator: Callable[..., Negotiator]
+    plan: Callable[[Problem, Any, View, float | None], Plan]
+    can: frozenset[str]
+
+
+_IMPLEMENTATIONS = (
+    Method(
+        name="auction",
+        summary="one task a round to the best bid; the auction thesis",
+        allocator=AUCTION,
+        negotiator=negotiator_of,
+        plan=plan_of_view,
+        can=AuctionValuer.can,
+    ),
+    Method(
+        name="consensus-bundle",
+        summary="bundles of tasks, and rounds until all agree; CBBA of Choi, Brunet and How",
+        allocator=CONSENSUS_BUNDLE,
+        negotiator=bundler_of,
+        plan=plan_of_bundles,
+        can=BundleValuer.can,
+    ),
+)
+
+METHODS = {method.name: method for method in _IMPLEMENTATIONS}
+
+
+def method_named(name: str) -> Method:
+    """The method of a name.
+
+    Raises
+    ------
+    ParameterError
+        if there is none.
+    """
+    if name not in METHODS:
+        raise ParameterError(f"method: {name}; expected {' or '.join(METHODS)}{did_you_mean(name, METHODS)}")
+    return METHODS[name]

@@ -1,0 +1,342 @@
+"""One robot's part in the distributed auction, as a state machine without clock, socket or thread (sans-I/O).
+
+`handle` takes a message and `tick` lets time pass; both return messages to send. Epochs (`auctions.epoch`) follow one
+another whenever the set of participating robots changes: a member falls silent, another robot is heard, a member
+restarts. Every robot that learns of a higher epoch enters it. A robot never declares or bids twice for the same thing
+and never returns to an epoch that it has left; so two robots that count each other as members never own the same task
+(see docs/negotiation.md).
+
+No message is assumed to be delivered. Each robot states its progress and what it lacks at least every `heartbeat_s`; a
+robot that has the lacking data sends it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from itertools import repeat
+from typing import Any
+
+from muster_team.auctions.epoch import Epoch
+from muster_team.auctions.valuation import Valuer
+from muster_team.knowledge.effects import Counts, Memory, Notice, Notices, Outgoing
+from muster_team.knowledge.epoch_base import Base, Rules
+from muster_team.knowledge.facts import in_order
+from muster_team.knowledge.messages import Claim, Declaration, Fact, Heartbeat, Message, Stage
+from muster_team.membership.identity import Identity
+from muster_team.membership.members import Members, Timeouts
+from muster_team.membership.peer_progress import PeerProgress
+from muster_team.membership.stalled_members import StalledMembers
+from muster_team.negotiators.owned_tasks import OwnedTasks
+from muster_team.negotiators.repairs import Repairs
+
+
+@dataclass
+class Participant:
+    """One robot of the auction.
+
+    Parameters
+    ----------
+    robot
+        its id.
+    rules, valuer, timeouts
+        the rules of the mission, the computation of this robot's bids, and the protocol's time limits.
+    incarnation
+        the number of this start of the robot; higher than all earlier ones.
+    remembered
+        what the robot kept from its last incarnation, if it kept anything.
+    forgot
+        whether the robot may have taken part before without remembering it. Then it does not count towards the majority
+        for at-most-once tasks until robots that remember have declared together with it.
+    absent
+        robots that join later; nobody waits for them.
+    """
+
+    robot: str
+    rules: Rules
+    valuer: Valuer
+    timeouts: Timeouts = field(default_factory=Timeouts)
+    incarnation: int = 0
+    remembered: Memory | None = None
+    forgot: bool = False
+    absent: Collection[str] = ()
+
+    def __post_init__(self) -> None:
+        memory = self.remembered or Memory(knows=not self.forgot)
+        self.members = Members(self.robot, self.timeouts)
+        self.counts = Counts()
+        self.notices = Notices()
+        self.epochs: list[Epoch] = []  # those of which the base was found
+        self.knows = memory.knows
+        self._before = memory
+        self._identity = Identity(self.robot, self.incarnation)
+        self._owned = OwnedTasks.remembered(self.robot, self.incarnation, memory)
+        self._peer_progress = PeerProgress(self.robot)
+        self._stalled = StalledMembers(self.members)
+        self._repairs = Repairs(self.robot, self.timeouts.retry_s)
+        self._looked_at = 0  # the digest of what is known for good, when it was last looked at for news
+        self._restart_heard = False  # whether a robot has started restarted since this epoch was entered
+        self._due_s = 0.0
+        self.epoch: Epoch  # from `start` on
+
+    def start(self, now: float) -> list[Outgoing]:
+        """Start, with the whole team as expected members; return the messages to send."""
+        self.members.expect(self.rules.robots, now, self.absent)
+        claims = self._owned.left_of(self._before.claims)
+        return self._open(self._declaration(self._before.epoch + 1, claims, 0, now), now)
+
+    @property
+    def stage(self) -> Stage:
+        return self.epoch.stage
+
+    @property
+    def settled(self) -> bool:
+        """Whether all members are known to agree with this robot on all owners, and nobody bids any more."""
+        quiet = not (self._owned.unsent or self._owned.epoch_due)
+        return quiet and self._peer_progress.holds(self.stage, self.epoch.own.members)
+
+    @property
+    def twice(self) -> Mapping[str, tuple[str, ...]]:
+        """Tasks that several robots have begun or done, with these robots, as far as this robot knows."""
+        base = self._base
+        return {**(base.twice if base else {}), **self._owned.known.twice}
+
+    @property
+    def due_s(self) -> float:
+        """The latest time at which `tick` has to be called next."""
+        return self._due_s
+
+    def handle(self, message: Message, now: float) -> list[Outgoing]:
+        """Process a message; return the messages to send."""
+        if self._identity.superseded:
+            return []
+        if not self._hear(message, now):
+            return self._correct(message, now)
+        out: list[Outgoing] = []
+        number = message.stage.epoch
+        if self.epoch.own.incarnation < self.incarnation:
+            out += self._enter(max(number, self.epoch.own.epoch + 1), now)
+        if number > self.epoch.own.epoch:
+            self.notices.tell_each("exclude", self._stalled.too_long_for(message, self.epoch, now))
+            out += self._enter(number, now)
+        if number == self.epoch.own.epoch and self._absorb(message):
+            out += self._go_on(now)
+        if self._restart_heard and self._is_outdated():
+            out += self._enter(self.epoch.own.epoch + 1, now)
+        self._peer_progress.hear(message, self.epoch.stage)
+        if (what := self._repairs.answer(message, self.epoch, self._owned.known, now)) is not None:
+            self.counts.repairs += 1
+            out.append(Outgoing(self._message(None, **what), message.sender))
+        return out
+
+    def tick(self, now: float) -> list[Outgoing]:
+        """Let time pass; return the messages to send."""
+        out: list[Outgoing] = []
+        if self._identity.superseded:
+            return out
+        self.notices.tell_each("exclude", self._stalled.too_long(self.epoch, now))
+        outdated = self._restart_heard and self._is_outdated()
+        if outdated or self.members.present(now) != self.epoch.own.members or self._has_news():
+            out += self._enter(self.epoch.own.epoch + 1, now)
+        if self._owned.unsent or (now >= self._due_s and not out):
+            out.append(Outgoing(self._heartbeat(now)))
+        return out
+
+    @property
+    def _base(self) -> Base | None:
+        """The base of the last epoch whose base was found."""
+        return self.epochs[-1].base if self.epochs else None
+
+    @property
+    def _rules(self) -> Rules:
+        """The rules of the mission with the tasks that were added."""
+        base = self._base
+        return self.rules.with_added(base.added) if base else self.rules
+
+    def _enter(self, number: int, now: float) -> list[Outgoing]:
+        """Leave the current epoch and enter the one with this number."""
+        before, left = self.epoch.own.members, self.epoch
+        own = self._declaration(number, self._owned.up_to_date(left), left.rounds, now)
+        self.notices.tell("silent", [robot for robot in before if robot not in own.members])
+        self.notices.tell("back", [robot for robot in own.members if robot not in before])
+        return self._open(own, now)
+
+    def _declaration(self, number: int, route: tuple[Claim, ...], rounds: int, now: float) -> Declaration:
+        """The declaration of this robot in an epoch, with this route and after this number of rounds."""
+        members = self.members.present(now)
+        return Declaration(
+            robot=self.robot,
+            incarnation=self.incarnation,
+            epoch=number,
+            members=members,
+            route=route,
+            facts=in_order(self._owned.known.facts),
+            rounds=rounds,
+            incarnations=tuple(self.incarnation if r == self.robot else self.members.incarnation(r) for r in members),
+            knows=self.knows,
+        )
+
+    def _open(self, own: Declaration, now: float) -> list[Outgoing]:
+        """Declare, and begin the auction of this epoch."""
+        work = self._owned
+        refused = frozenset(
+            {*self._rules.tasks, *(f.task for f in work.known.facts)} if work.withdrawn else work.refused
+        )
+        self.epoch = Epoch(own, self.rules, self.valuer, refused)
+        self._restart_heard = work.epoch_due = False
+        work.unsent.clear()  # the declaration contains them
+        self._peer_progress.enter()
+        self._stalled.enter(self.stage, now)
+        self.counts.news += 1
+        return [Outgoing(self._message(now, declarations=(own,))), *self._go_on(now)]
+
+    def _hear(self, message: Message, now: float) -> bool:
+        """Note who is alive and which facts hold; False for a stranger, a rival, or an earlier incarnation."""
+        if message.sender == self.robot:
+            self._identity.may_renumber = False  # another process of this name lives
+        if message.sender == self.robot or not self.members.accepts(message):
+            self._hear_of(message.heartbeat, now)
+            return False
+        if self.members.hear_from(message, now):
+            self._note_restart(message.sender)
+        for heartbeat in message.heartbeats:
+            self._hear_of(heartbeat, now)
+        for said in message.declarations:
+            if said != self.epoch.declaration_of(said.robot):
+                for heartbeat in map(Heartbeat, said.members, said.incarnations, repeat(-1)):
+                    self._hear_of(heartbeat, now)
+                self._learn(said.facts)
+        if message.facts:
+            self._learn(message.facts)
+        self._repairs.hear(message)
+        return True
+
+    def _correct(self, message: Message, now: float) -> list[Outgoing]:
+        """Tell a sender with an outdated incarnation which incarnation is known.
+
+        It may have started without memory after its clock was set back. It then takes a higher incarnation. While the
+        known incarnation is heard, another process has the id, and nobody is told.
+        """
+        is_past = self.members.incarnation(message.sender) > message.incarnation
+        if not is_past or not message.heartbeats or not self._repairs.may_answer(message, now):
+            return []
+        correction = self.members.correction(message.sender, now)
+        if correction is None:
+            return []
+        self.counts.repairs += 1
+        return [Outgoing(self._message(None, heartbeats=(correction,)), message.sender)]
+
+    def _hear_of(self, heartbeat: Heartbeat, now: float) -> None:
+        """Note that a robot was alive. For this robot's own id it may be another process, or an earlier incarnation."""
+        if heartbeat.robot == self.robot:
+            self._identity.may_renumber |= heartbeat.number == 0  # a correction: no rival lives
+            if self._identity.renumber_above(heartbeat):
+                self._renumber()
+            elif self._identity.hear(heartbeat):
+                self.notices.tell("rival", [self.robot])
+        elif self.members.hear(heartbeat, now):
+            self._note_restart(heartbeat.robot)
+
+    def _renumber(self) -> None:
+        """Continue under a higher incarnation, as after a restart with memory; the next epoch is entered with it."""
+        self.incarnation = self._owned.incarnation = self._identity.incarnation
+        self.epochs.clear()
+        self.notices.tell("renumbered", [self.robot])
+
+    def _note_restart(self, robot: str) -> None:
+        self._restart_heard = True
+        self.notices.tell("restarted", [robot])
+
+    def _learn(self, facts: Collection[Fact]) -> None:
+        if any(fact.kind in ("done", "part") for fact in self._owned.known.learn(facts)):
+            self.notices.tell_twice(self.twice)
+
+    def _absorb(self, message: Message) -> bool:
+        """Process the parts of a message that belong to this epoch; return whether the auction can go on."""
+        epoch, new = self.epoch, False
+        for declaration in message.declarations:
+            if declaration.incarnation >= self.members.incarnation(declaration.robot):
+                new |= epoch.hear_declaration(declaration)
+                if self.robot in declaration.members:
+                    self.members.readmit(declaration.robot)
+        for bids in message.bids:
+            new |= epoch.hear_bids(message.stage.base, bids)
+        if message.sales or message.stage.ended:
+            new |= epoch.learn(message.stage, message.sales, message.sales_from)
+        return new
+
+    def _go_on(self, now: float) -> list[Outgoing]:
+        """Advance the auction as far as possible; return messages with the bids to publish."""
+        had_base = self.epoch.base is not None
+        published = self.epoch.advance()
+        if self.epoch.base is not None and not had_base:
+            self._note_base(self.epoch.base)
+        self._stalled.reach(self.stage, now)
+        if self.stage.ended and self._peer_progress.end(self.stage):
+            self.members.reset_exclusions(self.epoch.own.members)
+            self._due_s = min(self._due_s, now)  # report it at once
+        self.counts.news += len(published)
+        return [Outgoing(self._message(now, bids=(bids,), **self._last_sale())) for bids in published]
+
+    def _note_base(self, base: Base) -> None:
+        """Process the base of the epoch, which follows from the declarations of all members."""
+        self.epochs.append(self.epoch)
+        self._identity.may_renumber &= len(base.routes) == 1  # else the others have accepted the incarnation
+        self._peer_progress.find_base()
+        self._learn(base.facts)
+        me = self.epoch.own.members.index(self.robot)
+        others = [d for d in self.epoch.declarations if d.robot != self.robot]
+        told = sum(d.knows and d.incarnations[me] == self.incarnation for d in others)
+        self.knows = self.knows or told >= self.rules.majority
+        self._owned.give_up_lost(base.routes[self.robot])
+        self.notices += [Notice("dropped", (robot,), task) for robot, task in base.dropped]
+        self.notices.tell_twice(base.twice)
+
+    def _is_outdated(self) -> bool:
+        """Whether a member has restarted since it declared in this epoch."""
+        return any(self.members.incarnation(d.robot) > d.incarnation for d in self.epoch.declarations)
+
+    def _has_news(self) -> bool:
+        """Whether something has to be declared that was not known when this epoch began, so that a new epoch is due."""
+        base = self.epoch.base
+        if self._owned.epoch_due or base is None:
+            return self._owned.epoch_due
+        if self._looked_at == (state := self._owned.known.digest) and self.knows:
+            return False
+        self._looked_at = state
+        return self._could_be_told() or any(f.opens_epoch and f not in base.facts for f in self._owned.known.facts)
+
+    def _could_be_told(self) -> bool:
+        """Whether this robot has lost its memory and enough members that remember are here."""
+        know = sum(declared.knows for declared in self.epoch.declarations)
+        return self.epoch.ended and not self.knows and know >= self.rules.majority
+
+    def _heartbeat(self, now: float) -> Message:
+        """A heartbeat: that this robot is alive, whom it has heard, what it lacks, and its last statements."""
+        unsent = tuple(self._owned.unsent)
+        self._owned.unsent.clear()
+        self.counts.news += bool(unsent)
+        self.counts.heartbeats += not unsent
+        return self._message(
+            now,
+            lacks=self.epoch.lacks,
+            heartbeats=self.members.heartbeats(self._identity.heartbeat, now),
+            unheard=self.members.unheard(now),
+            facts=unsent,
+            known=self._owned.known.digest,
+            **self._repairs.passed_on(self.epoch),
+        )
+
+    def _message(self, sent_s: float | None, **said: Any) -> Message:
+        """The next message. One that goes to all at `sent_s` delays the next heartbeat."""
+        self._identity.number += 1
+        if sent_s is not None:
+            asks_s = self._repairs.asks_s(self._identity.number, len(self.epoch.own.members))
+            self._due_s = sent_s + (self.timeouts.heartbeat_s if self.stage.ended else asks_s)
+        agreed = tuple(sorted(self._peer_progress.agreed)) if self.stage.ended else ()
+        return Message(self.robot, self.incarnation, self._identity.number, self.stage, agreed=agreed, **said)
+
+    def _last_sale(self) -> dict[str, Any]:
+        """The result of the last round, for members that have missed some of its bids."""
+        sales = self.epoch.sales
+        return {"sales": (sales[-1],), "sales_from": len(sales) - 1} if sales else {}

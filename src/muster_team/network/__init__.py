@@ -1,0 +1,1 @@
+"""How messages reach other robots: their encoding, encryption, replay protection, and the transports."""

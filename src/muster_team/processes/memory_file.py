@@ -1,0 +1,122 @@
+"""The JSON file from which a robot's process continues after a restart.
+
+It is written before anything is sent and before work begins. So a restarted robot never contradicts in an epoch what it
+has stated in it before, and never waives a task that it has begun.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from muster.mission.errors import Finding, InputError
+from muster_team.knowledge.effects import Memory
+from muster_team.knowledge.messages import Claim, Fact
+from muster_team.negotiators.negotiator import Negotiator
+
+_SCHEMA = "muster-memory/1"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kept:
+    """The contents of the file.
+
+    Parameters
+    ----------
+    auction
+        the digest of mission and terms, in hexadecimal digits.
+    robot, incarnation
+        the robot, and the number of its last start; 0: it has never started.
+    memory
+        what it knew; None: nothing yet.
+    """
+
+    auction: str
+    robot: str
+    incarnation: int = 0
+    memory: Memory | None = None
+
+    def save(self, file: Path) -> None:
+        """Write the file so that after a loss of power it holds either the new or the old contents."""
+        beside = file.with_name(file.name + ".new")
+        with beside.open("w", encoding="utf-8") as out:
+            json.dump({"schema": _SCHEMA} | asdict(self), out, default=_plain)
+            out.write("\n")
+            out.flush()
+            os.fsync(out.fileno())
+        beside.replace(file)
+
+
+def kept_of(file: Path | None, digest: bytes, robot: str) -> Kept:
+    """What a robot has stored in the auction of this digest; raises as `kept_in`. None: it has no file."""
+    return Kept(auction=digest.hex(), robot=robot) if file is None else kept_in(file, digest.hex(), robot)
+
+
+def kept_in(file: Path, auction: str, robot: str) -> Kept:
+    """The contents of a file; empty if there is none.
+
+    Raises
+    ------
+    InputError
+        if the file cannot be read, or belongs to another auction or robot.
+    """
+    nothing = Kept(auction=auction, robot=robot)
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+        schema = data.pop("schema")
+        memory = None if data["memory"] is None else _memory(data["memory"])
+        found = replace(nothing, **data | {"memory": memory})
+    except FileNotFoundError:
+        return nothing
+    except (UnicodeError, ValueError, AttributeError, KeyError, TypeError):
+        raise _wrong(file, "", "other content", "what --memory has written") from None
+    if schema != _SCHEMA:
+        raise _wrong(file, "schema", str(schema), _SCHEMA)
+    if found.robot != robot:
+        raise _wrong(file, "robot", found.robot, f"{robot}, or a new file")
+    if found.auction != auction:
+        raise _wrong(file, "auction", "of another mission or other terms", "the same as before, or a new file")
+    return found
+
+
+def keeper(file: Path, kept: Kept, negotiator: Negotiator) -> Callable[[], None]:
+    """A function that stores what the robot knows in a file if that has changed."""
+
+    def keep() -> None:
+        nonlocal kept
+        now = replace(kept, incarnation=negotiator.incarnation, memory=negotiator.memory)
+        if now != kept:
+            kept = now
+            kept.save(file)
+
+    return keep
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, bytes):
+        return value.hex()
+    assert isinstance(value, frozenset)
+    return sorted(value)
+
+
+def _memory(data: dict[str, Any]) -> Memory:
+    return Memory(
+        claims=tuple(Claim(**claim) for claim in data["claims"]),
+        facts=_facts(data["facts"]),
+        epoch=int(data["epoch"]),
+        knows=bool(data["knows"]),
+        refused=frozenset(data["refused"]),
+        reserved=_facts(data["reserved"]),
+    )
+
+
+def _facts(data: list[dict[str, Any]]) -> tuple[Fact, ...]:
+    return tuple(Fact(**fact | {"content": bytes.fromhex(fact["content"])}) for fact in data)
+
+
+def _wrong(file: Path, field: str, value: str, expected: str) -> InputError:
+    return InputError([Finding(str(file), None, field, value, expected)])
