@@ -6,6 +6,7 @@ import os
 import pickle
 import sys
 import threading
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -20,19 +21,19 @@ def main(link_fd: int, lifeline_fd: int) -> None:
         do = pickle.loads(link.recv_bytes())  # noqa: S301  (of the process that began this one)
     except Exception as error:
         do = _raising(error)
-    link.send_bytes(b"ready")
-    while True:
-        try:
-            job = link.recv()
-        except EOFError:
-            return
-        try:
-            answer = do(job)
-        except Exception as error:
-            answer = Raised(error)
-        except BaseException as error:  # of the job: Ctrl-C does not come to this process, and nothing else ends it
-            answer = Lost(_line(error))
-        _answer(link, answer)
+    with suppress(EOFError, BrokenPipeError, ConnectionResetError):  # the other process has ended, or has no more jobs
+        link.send_bytes(b"ready")
+        while True:
+            _answer(link, _done(do, link.recv()))
+
+
+def _done(do: Any, job: Any) -> Any:
+    try:
+        return do(job)
+    except Exception as error:
+        return Raised(error)
+    except BaseException as error:  # of the job: Ctrl-C does not come to this process, and nothing else ends it
+        return Lost(_line(error))
 
 
 def _answer(link: Connection[Any, Any], answer: Any) -> None:
