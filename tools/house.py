@@ -42,11 +42,14 @@ def _package(name: str, rooms: list[str]) -> Iterator[str]:
     yield f"{_first_sentence(_SRC / name / '__init__.py')}\n"
     if rooms:
         yield "| room | what it holds |\n|---|---|"
-        yield from (f"| `{room}` | {_first_sentence(_SRC / name / room / '__init__.py')} |" for room in rooms)
+        for place in (
+            place for room in rooms for place in (room, *(f"{room}/{wing}" for wing in _rooms(f"{name}/{room}")))
+        ):
+            yield f"| `{place}` | {_first_sentence(_SRC / name / place / '__init__.py')} |"
 
 
-def _rooms(name: str) -> list[str]:
-    return sorted(path.parent.name for path in (_SRC / name).glob("*/__init__.py"))
+def _rooms(place: str) -> list[str]:
+    return sorted(path.parent.name for path in (_SRC / place).glob("*/__init__.py"))
 
 
 def _first_sentence(file: Path) -> str:

@@ -16,7 +16,7 @@ EXTRAS = {
     "muster_team": ("net", "map"),
     "muster_robots": ("mavlink", "ros2", "record", "map", "plot"),
     "muster_control": ("web", "client"),
-    "muster_studies": ("studies", "compare", "record"),
+    "muster_studies": ("studies", "compare"),
 }
 """The extras that the tests of each package need. A test that needs more, of another package, is skipped without."""
 _TOOLS = {"muster_files": "test-files", "muster_robots": "test-robots", "muster_control": "test-control"}
