@@ -189,6 +189,7 @@ $(VENV)/developed: $(BUILT_FROM) | $(VENV)/made
 	$(BIN)/pip install --quiet --upgrade 'pip >=25.1'  # knows dependency groups
 	$(BIN)/pip install --quiet --group dev --editable '.[all]' \
 		-C cmake.define.MUSTER_WERROR=ON -C cmake.define.MUSTER_UNITY=OFF  # a change of one file compiles one file
+	-$(BIN)/python -m pytest --collect-only -q >/dev/null  # compiles the tests once, which each worker would do by itself
 	@touch $(VENV)/installed $@
 
 $(VENV)/documented: $(VENV)/developed
