@@ -114,6 +114,8 @@ def _activity(drone: Drone) -> str:
             return "did not fly, not armed"
         home = telemetry.place is not None and math.dist(telemetry.place, telemetry.start) <= _HOME_M
         return "returned, landed, not armed" if home else "landed, not armed"
+    if telemetry.place is None:
+        return "armed, its height not known"
     if not telemetry.up:
         return "on the ground, armed"
     names = {kind.hold: "hovers", kind.back: "returns", kind.land: "lands"}

@@ -4,10 +4,22 @@ import math
 
 import pytest
 from tests.muster_robots.mavlink.drones import Sky, mission
-from tests.muster_robots.mavlink.talk import HOLD, M, Talk, ack, commands, from_drone, mission_ack, request
+from tests.muster_robots.mavlink.talk import (
+    HOLD,
+    M,
+    Talk,
+    ack,
+    commands,
+    from_drone,
+    heartbeat,
+    mission_ack,
+    position,
+    request,
+)
 
 from muster.motion.port import Waypoint
 from muster_robots.mavlink.autopilots import PX4
+from muster_robots.mavlink.drone import final_state_of
 from muster_robots.mavlink.faults import Kind
 
 
@@ -74,3 +86,16 @@ def test_an_error_over_one_drone_ends_its_part_alone_and_all_hover(verb):
         ("r_0", Kind.NOT_UNDERSTOOD, "KeyError: 9")
     ]
     assert [drone.mode for drone in sky.drones.values()] == [PX4.hold, PX4.hold]
+
+
+def test_a_drone_that_has_not_said_where_it_is_is_not_said_to_be_on_the_ground():
+    talk = Talk()
+    drone = talk.session.drone
+    drone.telemetry.place = None
+    talk.say(heartbeat(armed=True))
+    told = final_state_of(drone, talk.now)
+    assert (told.state, told.position, told.moving) == ("armed, its height not known", None, True)
+    talk.say(position(above=0.0))
+    assert final_state_of(drone, talk.now).state == "on the ground, armed"
+    talk.say(position(above=10.0))
+    assert final_state_of(drone, talk.now).moving
