@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, TypedDict
 
 from muster.mission.errors import ParameterError
-from muster.mission.system.plugins import Registry, function_expected
+from muster.mission.system.plugins import Registry, declaring, function_expected, require_words
 from muster.mission.value_types import shown
 
 FIRMWARES = ("px4", "ardupilot")
@@ -174,14 +174,8 @@ def declares(*, options: Collection[str] = (), folder: bool = False) -> Callable
     folder : bool
         Whether the files go into a folder, even a single one.
     """
-    if unknown := [name for name in options if name not in ExportKeywords.__annotations__]:
-        raise ParameterError(f"options: {unknown[0]}; expected {', '.join(ExportKeywords.__annotations__)}")
-
-    def declared(write: Exporter) -> Exporter:
-        write.options, write.folder = tuple(options), folder  # type: ignore[attr-defined]
-        return write
-
-    return declared
+    require_words("options", options, ExportKeywords.__annotations__)
+    return declaring(options=tuple(options), folder=folder)
 
 
 def options_of(form: str) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.import_ledger import Ledger, summary_lines
 from muster.mission.model import Mission
-from muster.mission.system.plugins import Registry
+from muster.mission.system.plugins import Registry, require_words
 
 FLAGS = ("robots", "suitability", "salesmen", "depot", "columns")
 """The parameters of `load` that go with some kinds of files."""
@@ -62,8 +62,7 @@ class MissionReader:
     refusal: Callable[[Path], MissionError | None] = lambda _: None
 
     def __post_init__(self) -> None:
-        if unknown := [name for name in self.flags if name not in FLAGS]:
-            raise ParameterError(f"flags: {unknown[0]}; expected {', '.join(FLAGS)}")
+        require_words("flags", self.flags, FLAGS)
 
 
 def _checked(_: str, found: object) -> MissionReader:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError, PluginError
 from muster.mission.records import Record, Settings, key_of, specified
-from muster.mission.system.plugins import Registry, function_expected
+from muster.mission.system.plugins import Registry, declaring, function_expected, require_words
 from muster.mission.value_types import Fault, shown
 from muster.mission.values.keywords import require_known
 
@@ -56,16 +56,10 @@ def declares(
         Raises `MissingExtraError` if this machine lacks a package that the fleet needs. It is called before the fleet
         is opened, and when mission control starts that serves the fleet.
     """
-    if unknown := [word for word in abilities if word not in ABILITIES]:
-        raise ParameterError(f"abilities: {unknown[0]}; expected {', '.join(ABILITIES)}")
-
-    def declared(open_fleet: OpenFleet) -> OpenFleet:
-        open_fleet.settings, open_fleet.claims = settings, claims  # type: ignore[attr-defined]
-        open_fleet.abilities = frozenset(abilities)  # type: ignore[attr-defined]
-        open_fleet.require_installed = require_installed  # type: ignore[attr-defined]
-        return open_fleet
-
-    return declared
+    require_words("abilities", abilities, ABILITIES)
+    return declaring(
+        settings=settings, claims=claims, abilities=frozenset(abilities), require_installed=require_installed
+    )
 
 
 def settings_class(fleet: str) -> type[Settings] | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
-from muster.mission.errors import ParameterError
+from muster.mission.system.plugins import declaring, require_words
 
 if TYPE_CHECKING:
     from muster.mission.model import Mission
@@ -47,13 +47,6 @@ def declares(
     placed_camera : callable, optional
         Returns a camera of given intrinsics in the world of a mission: the cameras of the world have pictures.
     """
-    for what, words, known in (("settings", settings, SETTINGS), ("abilities", abilities, ABILITIES)):
-        if unknown := [word for word in words if word not in known]:
-            raise ParameterError(f"{what}: {unknown[0]}; expected {', '.join(known)}")
-
-    def declared(make: M) -> M:
-        make.settings, make.abilities = frozenset(settings), frozenset(abilities)  # type: ignore[attr-defined]
-        make.placed_camera = placed_camera  # type: ignore[attr-defined]
-        return make
-
-    return declared
+    require_words("settings", settings, SETTINGS)
+    require_words("abilities", abilities, ABILITIES)
+    return declaring(settings=frozenset(settings), abilities=frozenset(abilities), placed_camera=placed_camera)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import cache, cached_property
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Generic, TypeVar
@@ -167,6 +167,28 @@ def function_expected(expected: str) -> Callable[[str, object], Any]:
         return found
 
     return checked
+
+
+def declaring(**facts: object) -> Callable[[T], T]:
+    """What marks an implementation with facts about itself, as attributes of these names."""
+
+    def declared(implementation: T) -> T:
+        for name, fact in facts.items():
+            setattr(implementation, name, fact)
+        return implementation
+
+    return declared
+
+
+def require_words(what: str, words: Collection[str], known: Collection[str]) -> None:
+    """Refuse a declaration that uses other words than those that are known.
+
+    Raises
+    ------
+    ParameterError
+    """
+    if unknown := [word for word in words if word not in known]:
+        raise ParameterError(f"{what}: {unknown[0]}; expected {', '.join(known)}")
 
 
 def require_own_name(name: str, own: str) -> None:
