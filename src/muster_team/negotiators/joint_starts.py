@@ -131,7 +131,8 @@ class JointStarts:
     def _leave(self, task: str, unit: Sequence[str]) -> None:
         self.forget(task)
         attempt = attempt_of(self.known.facts, unit)
-        if (self.robot, attempt) in presences(self.known.facts, unit) and task not in self.known.done:
+        ready_at, _ = presences(self.known.facts, unit).get((self.robot, attempt), ("", None))
+        if ready_at == task and task not in self.known.done:  # it may be ready now at one that begins with this one
             self.say(task, "left", left_content(attempt))
 
     def _attempt(self, task: str) -> int:

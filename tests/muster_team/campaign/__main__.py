@@ -9,6 +9,9 @@ from tests.muster_team.campaign.timed_trial import timed_trial
 from tests.muster_team.campaign.trial import trial
 from tests.trials import parser_of, run
 
+CPU_LIMIT_S = 60.0
+"""No seed takes so long: one that goes on for ever ends and fails."""
+
 
 def sum_up(took):
     seconds, shares = (sorted(values) for values in zip(*took, strict=True))
@@ -20,4 +23,4 @@ def sum_up(took):
 if __name__ == "__main__":
     parser = parser_of("tests.muster_team.campaign", __doc__)
     parser.add_argument("--timed", action="store_true", help="missions with rules of time, and teams at work")
-    sys.exit(run(parser, timed_trial if parser.parse_args().timed else trial, sum_up))
+    sys.exit(run(parser, timed_trial if parser.parse_args().timed else trial, sum_up, cpu_limit_s=CPU_LIMIT_S))
