@@ -160,6 +160,12 @@ def test_nothing_fails_of_teams_at_work(tried):
     assert {seed: what for seed in range(4) if (what := tried(seed).failures)} == {}
 
 
+@pytest.mark.parametrize(("tried", "seed"), [(carried_out, 120), (calm, 368), (like_the_centre, 836)])
+def test_what_failed_once_holds(tried, seed):
+    """Who goes over to a tied task; coalitions that find a better bid when they alone are asked."""
+    assert tried(seed).failures == []
+
+
 def test_scenes_have_everything():
     scenes = [scenario_of(seed) for seed in range(300)]
     kinds = Counter(kind for one in scenes for kind in {incident.kind for incident in one.incidents})

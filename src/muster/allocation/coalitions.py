@@ -54,6 +54,10 @@ class CoalitionBid:
         """The tasks that are sold: those of the unit, and what is sold with it."""
         return sorted({task for task, _, _ in self.insertion.members})
 
+    @property
+    def robots(self) -> list[int]:
+        return sorted({robot for _, robot, _ in self.insertion.members})
+
     def members(self, task: int) -> list[int]:
         """The robots that would do one of the unit's tasks."""
         return sorted(robot for j, robot, _ in self.insertion.members if j == task)
@@ -160,7 +164,17 @@ class CoalitionAuction:
         )
 
     def best_bid(self, unit: int, robots: Sequence[int]) -> CoalitionBid | None:
-        """The best bid for a unit that these robots can make; None: none."""
+        """The best bid for a unit that these robots can make; None: none.
+
+        It is the one that those who make it find if they alone are asked: so robots without a centre agree on it.
+        """
+        bid = self._best_of(unit, robots)
+        while bid is not None and len(bid.robots) < len(robots):
+            robots = bid.robots
+            bid = self._best_of(unit, robots) or bid
+        return bid
+
+    def _best_of(self, unit: int, robots: Sequence[int]) -> CoalitionBid | None:
         for roster in self._rosters:
             found = roster.best(unit, robots, append_only=self._terms.placement == "append")
             if found is not None:
@@ -215,7 +229,7 @@ class CoalitionAuction:
             return
         yield best
         known = {_team(best)}
-        for without in sorted({robot for _, robot, _ in best.insertion.members}):
+        for without in best.robots:
             found = self.best_bid(unit, [robot for robot in others if robot != without])
             if found is not None and _team(found) not in known:
                 known.add(_team(found))

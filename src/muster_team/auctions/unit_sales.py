@@ -103,7 +103,7 @@ class UnitSales:
             alone = [_Winners((self._leaves_no_time(unit, robot), price), (robot,)) for robot, price in heard.items()]
             return sorted(alone, key=lambda bid: (bid.key, bid.robots))
         coalitions = self._auction.bids(unit, sorted(heard)) if heard else []
-        return [_Winners(bid.key, _robots(bid)) for bid in coalitions]
+        return [_Winners(bid.key, tuple(bid.robots)) for bid in coalitions]
 
     def _leaves_no_time(self, unit: int, robot: int) -> bool:
         """Whether by the bid of this robot something not sold yet could not be in time any more, as all compute it."""
@@ -143,7 +143,7 @@ class UnitSales:
     def _won(self, number: int, sold: Sold, members: Sequence[int]) -> CoalitionSale:
         """The sale with all bids for its unit, that of the winners first."""
         won = self._bid_of(sold)
-        others = [bid for bid in self._auction.bids(won.unit, members) if _robots(bid) != _robots(won)]
+        others = [bid for bid in self._auction.bids(won.unit, members) if bid.robots != won.robots]
         return CoalitionSale(number, [won, *others])
 
 
@@ -153,7 +153,3 @@ class _Winners:
 
     key: tuple[bool, float]
     robots: tuple[int, ...]
-
-
-def _robots(bid: CoalitionBid) -> tuple[int, ...]:
-    return tuple(sorted({robot for _, robot, _ in bid.insertion.members}))
