@@ -162,7 +162,11 @@ class Run:
     def _reason_of_cancelling(self, unit):
         if self.cancelled & set(unit):
             return "cancelled"
-        told = {data["task"] for _, _, kind, data in self.team.told if kind in MISSED}
+        told = {
+            data["task"]
+            for at_s, _, kind, data in self.team.told
+            if kind in MISSED or (kind == "task_refused" and at_s > self._latest_s(self.tasks[data["task"]]))
+        }
         return "missed" if told & set(unit) else ""
 
     def _unit(self, name):
