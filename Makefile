@@ -3,7 +3,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-CPP := $(wildcard src/muster/core/*.cpp src/muster/core/*.hpp)
+CPP := $(wildcard src/muster/core/*.[ch]pp src/muster/core/*/*.[ch]pp)
 BUILT_FROM := pyproject.toml CMakeLists.txt $(CPP)
 DEMO_MISSION ?= 31T-6R50
 

@@ -4,7 +4,7 @@ import math
 from itertools import permutations
 
 from muster import core
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 from muster.verification.measure import all_measured
 from muster.verification.travel import Travel
 

@@ -35,7 +35,9 @@ FAULTS = {
     "traffic": Fault(
         "src/muster/traffic/reservations.py", "self._last.get(cell, -1) + 1", "self._last.get(cell, -1) - 1"
     ),
-    "core (C++)": Fault("src/muster/core/team.cpp", "for (k = size_[robot] - 1 - k;", "for (k = size_[robot] - k;"),
+    "core (C++)": Fault(
+        "src/muster/core/plans/team.cpp", "for (k = size_[robot] - 1 - k;", "for (k = size_[robot] - k;"
+    ),
     "allocation": Fault("src/muster/allocation/fixed.py", "if k < least[i] or", "if k <= least[i] or"),
     "verification": Fault(
         "src/muster/verification/energy.py", "if stated > room + slack:", "if stated < room - slack:"

@@ -163,6 +163,7 @@ _NAMES_OF = {
 _MODULE_OF = {name: module for module, names in _NAMES_OF.items() for name in names.split()}
 
 _MOVED = {
+    "muster.allocation.problem": "muster.model.problem",
     "muster.bridges": "muster_robots",
     "muster.client": "muster_control.client",
     "muster.comparison": "muster_studies.comparison",

@@ -9,13 +9,13 @@ from statistics import fmean, stdev
 from typing import Any
 
 from muster.allocation.allocator import make_parameters
-from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_named
 from muster.allocation.stop import Stop
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.mission.system.clock import ProcessorClock
+from muster.model.problem import Problem
 from muster.planning.loading import load
 from muster.verification import Verdict, verify
 from muster_studies.comparison.run import attempt

@@ -10,10 +10,10 @@ from tests.action_missions import random_mission
 
 import muster
 from muster import Mission, Robot, Rules, Task
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
+from muster.allocation.bounds.feasibility import impossible
 from muster.mission.model import Action, Camera, Map, Zone
 from muster.mission.plan import Plan, Route
+from muster.model.problem import Problem
 from muster.verification.travel import Travel, doing_at, place_at_end, place_of_start, place_of_task
 
 CASES = [*((seed, False) for seed in range(8)), *((seed, True) for seed in range(4))]
@@ -230,7 +230,7 @@ def test_the_smallest_change_is_never_at_a_robot_that_cannot():
     mission = looked_at(
         Robot(id="able", position=(0, 0), camera=CAMERA, work_capacity=1), Robot(id="blind", position=(10, 0))
     )
-    from muster.allocation.remedies import remedies, smallest, smallest_as_is
+    from muster.allocation.remedies.remedies import remedies, smallest, smallest_as_is
 
     problem = Problem.compile(mission)
 

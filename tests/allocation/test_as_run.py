@@ -5,10 +5,10 @@ import pytest
 
 import muster
 from muster import core
-from muster.allocation.bounds_of_mutation import BOUNDS
-from muster.allocation.problem import Problem
+from muster.allocation.algorithms.bounds_of_mutation import BOUNDS
 from muster.library import published
 from muster.mission.errors import ParameterError
+from muster.model.problem import Problem
 
 A_15 = published("tcf-salesmen")["tables"]["A.15"]["total+max"]
 SALESMEN = muster.load("eil51-5-thesis")

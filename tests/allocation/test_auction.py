@@ -14,13 +14,13 @@ from tests.random_missions import random_mission, with_travel_tables
 
 import muster
 from muster.allocation.allocator import make_parameters
-from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS, Terms
-from muster.allocation.auctioneer import Auctioneer
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction_terms import BIDS, PLACEMENTS, WINNERS, Terms
+from muster.allocation.auctions.auctioneer import Auctioneer
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.generation.uniform import uniform_mission
 from muster.mission.system.clock import VirtualClock
+from muster.model.problem import Problem
 
 both_auctions = pytest.mark.parametrize("allocator", ["auction", "market"])
 every_winner = pytest.mark.parametrize("winner", WINNERS)

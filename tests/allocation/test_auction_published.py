@@ -7,11 +7,11 @@ import pytest
 
 import muster
 from muster.allocation.allocator import make_parameters
-from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.library import as_corrected, mission_names, published
 from muster.mission.errors import ParameterError
+from muster.model.problem import Problem
 from muster.verification.travel import Travel
 
 PLACEMENTS = ("append", "insert")

@@ -4,9 +4,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from muster import ParameterError
-from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS, Terms
-from muster.allocation.bids import BID_RULES, FIGURES, Standing, battery_penalty, lack_penalty, weighted
-from muster.allocation.winners import WINNER_RULES
+from muster.allocation.auctions.auction_terms import BIDS, PLACEMENTS, WINNERS, Terms
+from muster.allocation.auctions.bids import BID_RULES, FIGURES, Standing, lack_penalty, weighted
+from muster.allocation.auctions.winners import WINNER_RULES
+from muster.model.charges import share_used
 
 
 @pytest.mark.parametrize(
@@ -56,7 +57,7 @@ def test_the_words_of_the_terms_are_the_rules_there_are():
 
 def test_penalties_are_shares():
     capacities = np.array([60.0, 60.0, np.inf, 0.0])
-    assert battery_penalty(np.array([0.0, 30.0, 5.0, 0.0]), capacities).tolist() == [0.0, 0.5, 0.0, 0.0]
+    assert share_used(np.array([0.0, 30.0, 5.0, 0.0]), capacities).tolist() == [0.0, 0.5, 0.0, 0.0]
     assert lack_penalty(np.array([1.0, 0.7])) == pytest.approx([0.0, 0.3])
     assert weighted(np.array([10.0, -10.0, np.inf]), np.array([0.5, 1.0, 0.0])).tolist() == [15.0, -5.0, np.inf]
 

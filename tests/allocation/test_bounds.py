@@ -12,14 +12,14 @@ from tests.random_missions import TYPES, random_mission
 
 import muster
 from muster import Mission, Robot, Rules, Task, core
-from muster.allocation.arrival_bounds import least_arrivals
-from muster.allocation.arrival_paths import least_arrivals_on_paths
-from muster.allocation.bounds import WHY, best_bound, lower_bound
-from muster.allocation.earliest_times import opened
-from muster.allocation.problem import Problem
-from muster.allocation.spanning import Ways, route_bounds
-from muster.allocation.weighed_shares import far_shares, weighed_shares
+from muster.allocation.bounds.arrival_bounds import least_arrivals
+from muster.allocation.bounds.arrival_paths import least_arrivals_on_paths
+from muster.allocation.bounds.earliest_times import opened
+from muster.allocation.bounds.of_objective import WHY, best_bound, lower_bound
+from muster.allocation.bounds.spanning import Ways, route_bounds
+from muster.allocation.bounds.weighed_shares import far_shares, weighed_shares
 from muster.mission.model import OBJECTIVES, TravelTable
+from muster.model.problem import Problem
 
 ROUNDING = 1e-9
 
@@ -99,7 +99,7 @@ def test_route_bounds_hold_for_each_number_of_routes_and_for_weighted_robots(see
 @pytest.mark.parametrize("seed", range(40))
 def test_no_routes_have_a_lower_sum_of_arrivals_than_forests_and_paths(seed, merged, monkeypatch):
     if merged:
-        monkeypatch.setattr("muster.allocation.arrival_paths._EFFORT", 9 * 9 * 9 * 30)
+        monkeypatch.setattr("muster.allocation.bounds.arrival_paths._EFFORT", 9 * 9 * 9 * 30)
     random = Random(seed)
     ignored = ("capacity", "prerequisites")
     mission = random_mission(seed, tasks=9, robots=3, return_to_start=False) if seed % 2 else by_table(seed)
@@ -237,10 +237,10 @@ def test_every_argument_says_why_it_holds():
 def test_large_missions_are_bounded_row_by_row_as_well(monkeypatch):
     problem = Problem.compile(by_table(3), "total")
     usual = best_bound(problem).value
-    monkeypatch.setattr("muster.allocation.spanning._DENSE", 0)
+    monkeypatch.setattr("muster.allocation.bounds.spanning._DENSE", 0)
     assert best_bound(problem).value == pytest.approx(usual, rel=1e-12)
-    monkeypatch.setattr("muster.allocation.spanning._MOST_KINDS", 0)
-    monkeypatch.setattr("muster.allocation.feasibility._MOST_WAYS", 0)
+    monkeypatch.setattr("muster.allocation.bounds.spanning._MOST_KINDS", 0)
+    monkeypatch.setattr("muster.allocation.bounds.feasibility._MOST_WAYS", 0)
     assert best_bound(problem).value <= usual * (1 + ROUNDING)
 
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import muster
-from muster.allocation.auction import AUCTION, Parameters
-from muster.allocation.charges import Charge, Drains
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import AUCTION, Parameters
 from muster.allocation.stop import Stop
 from muster.mission.model import Battery, Mission, Robot
+from muster.model.charges import Charge, Drains
+from muster.model.problem import Problem
 from muster.running.simulation import Simulation
 
 

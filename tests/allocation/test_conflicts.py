@@ -11,11 +11,11 @@ from tests.all_plans import AllPlans
 from tests.mission.strategies import examples, tiny_missions
 from tests.random_missions import random_mission
 
-from muster.allocation.conflicts import Conflict, Together, together
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
+from muster.allocation.bounds.feasibility import impossible
+from muster.allocation.remedies.conflicts import Conflict, Together, together
 from muster.mission.model import Lag, Mission, Robot, Rules, Task
 from muster.mission.system.clock import VirtualClock
+from muster.model.problem import Problem
 from muster.verification import verify
 
 

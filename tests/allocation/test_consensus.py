@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from muster.allocation.consensus import NO_BID, NOBODY, Beliefs, Message, diameter, neighbours
+from muster.allocation.auctions.consensus import NO_BID, NOBODY, Beliefs, Message, diameter, neighbours
 from muster.allocation.stop import Stop
 
 # The conflict table: sender 0, receiver 1, others 2 (m) and 3 (n).

@@ -11,10 +11,10 @@ from tests.random_missions import random_mission, with_travel_tables
 
 import muster
 from muster.allocation.allocator import make_parameters, routes_of
-from muster.allocation.consensus import TOPOLOGIES, Beliefs, diameter, neighbours
-from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE, Parameters, extent, layers
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.consensus import TOPOLOGIES, Beliefs, diameter, neighbours
+from muster.allocation.auctions.consensus_bundle import CONSENSUS_BUNDLE, Parameters, extent, layers
 from muster.allocation.stop import Stop
+from muster.model.problem import Problem
 
 every_topology = pytest.mark.parametrize("topology", TOPOLOGIES)
 seeds = st.integers(0, 10**6)

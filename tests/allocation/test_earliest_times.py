@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from muster import Mission, Robot, Rules, Task
-from muster.allocation.earliest_times import EarliestTimes, kth_least
-from muster.allocation.problem import Problem
+from muster.allocation.bounds.earliest_times import EarliestTimes, kth_least
 from muster.mission.model import Lag
+from muster.model.problem import Problem
 
 
 def times(*tasks, robots=2, **rules):

@@ -12,12 +12,12 @@ from tests.random_missions import random_mission
 import muster
 from muster import Mission, Robot, Rules, Task, core
 from muster.allocation.allocator import routes_of
-from muster.allocation.bounds import lower_bound
+from muster.allocation.bounds.of_objective import lower_bound
 from muster.allocation.exact import solve_exactly
 from muster.allocation.exact.scale import Scale, whole_weights
-from muster.allocation.problem import Problem
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.model import OBJECTIVES
+from muster.model.problem import Problem
 from muster.planning.judging import admits
 
 pytest.importorskip("ortools", reason="needs the extra exact")

@@ -2,10 +2,10 @@
 
 import math
 
-from muster.allocation.explanations import Alternative, alternatives, unassigned
-from muster.allocation.problem import Problem
+from muster.allocation.reasons.explanations import Alternative, alternatives, unassigned
 from muster.mission.model import Mission, Robot, Rules, Task, TravelTable
 from muster.mission.plan import Reason
+from muster.model.problem import Problem
 
 INF = math.inf
 

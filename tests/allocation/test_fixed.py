@@ -10,16 +10,16 @@ from tests.random_missions import random_mission
 import muster
 from muster import core
 from muster.allocation.allocator import routes_of
-from muster.allocation.bounds import lower_bound
+from muster.allocation.bounds.of_objective import lower_bound
 from muster.allocation.exact import solve_exactly
 from muster.allocation.fixed import with_fixed_routes
-from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.cli.main import run
 from muster.generation.uniform import large_mission
 from muster.mission.errors import ParameterError
 from muster.mission.model import OBJECTIVES
 from muster.mission.plan import Plan, Route
+from muster.model.problem import Problem
 from muster.planning.judging import admits
 
 

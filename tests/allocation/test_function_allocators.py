@@ -4,10 +4,10 @@ import pytest
 
 import muster
 from muster.allocation.allocator import Allocator
-from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS, allocator_of
 from muster.allocation.stop import Stop
 from muster.mission.model import Robot, Rules, Task
+from muster.model.problem import Problem
 
 
 def nearest(problem, stop, seed, most=2):

@@ -5,9 +5,9 @@ from random import Random
 
 import pytest
 
-from muster.allocation import greedy
-from muster.allocation.problem import Problem
+from muster.allocation.algorithms import greedy
 from muster.mission.model import Mission, Robot, Rules, Task
+from muster.model.problem import Problem
 
 
 def mission_of(seed, objective):

@@ -5,11 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster.allocation import conflicts, feasibility
-from muster.allocation.conflicts import Together, together
-from muster.allocation.feasibility import impossible, limits_of
-from muster.allocation.problem import Problem
+from muster.allocation.bounds import feasibility
+from muster.allocation.bounds.feasibility import impossible, limits_of
+from muster.allocation.remedies import conflicts
+from muster.allocation.remedies.conflicts import Together, together
 from muster.mission.model import Mission, Robot, Rules, Task
+from muster.model.problem import Problem
 
 
 @st.composite

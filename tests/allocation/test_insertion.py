@@ -5,10 +5,10 @@ from hypothesis import strategies as st
 from tests.random_missions import random_mission
 
 from muster import core
-from muster.allocation.greedy import completed
-from muster.allocation.insertion import inserted
-from muster.allocation.problem import Problem
+from muster.allocation.algorithms.greedy import completed
+from muster.allocation.algorithms.insertion import inserted
 from muster.mission.model import Mission, Robot, Rules, Task
+from muster.model.problem import Problem
 
 
 def compiled(*tasks, robots=1, objective="makespan", **rules):

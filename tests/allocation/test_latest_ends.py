@@ -8,11 +8,11 @@ from tests.muster_team.trials.random_missions import random_mission, with_times
 
 import muster
 from muster import Mission, Robot, Rules, Task
-from muster.allocation.auction import AUCTION, Parameters
-from muster.allocation.latest_ends import LatestEnds
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import AUCTION, Parameters
+from muster.allocation.auctions.latest_ends import LatestEnds
 from muster.allocation.stop import Stop
 from muster.mission.model import Lag
+from muster.model.problem import Problem
 from muster_team.negotiators.participation import plan_of
 
 

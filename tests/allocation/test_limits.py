@@ -7,11 +7,11 @@ from tests.timed_missions.every_plan import EveryPlan
 from tests.timed_missions.meaning import Meaning
 from tests.timed_missions.missions import ignored_in, timed_mission
 
-from muster.allocation.conflict_texts import conflict_text
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
-from muster.allocation.usage_bounds import UsageBounds
+from muster.allocation.bounds.feasibility import impossible
+from muster.allocation.bounds.usage_bounds import UsageBounds
+from muster.allocation.remedies.conflict_texts import conflict_text
 from muster.mission.model import Lag, Mission, Robot, Task, TeamPart
+from muster.model.problem import Problem
 
 MOST_PLANS = 3000
 

@@ -12,10 +12,10 @@ from tests.verification.brute_paths import star
 
 import muster
 from muster import Mission, Robot, Rules, Task
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
+from muster.allocation.bounds.feasibility import impossible
 from muster.mission.errors import MissionError, NotSupportedError
 from muster.mission.model import Map, Zone
+from muster.model.problem import Problem
 from muster.motion.map_world import World
 from muster.verification.travel import Travel, place_at_end, place_of_start, place_of_task
 

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 from tests.random_missions import random_mission
 
 import muster
-from muster.allocation import market
-from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
-from muster.allocation.auctioneer import Auctioneer
-from muster.allocation.market import Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions import market
+from muster.allocation.auctions.auction_terms import BIDS, PLACEMENTS, WINNERS
+from muster.allocation.auctions.auctioneer import Auctioneer
+from muster.allocation.auctions.market import Parameters
 from muster.allocation.stop import Stop
 from muster.mission.model import OBJECTIVES
+from muster.model.problem import Problem
 
 
 @given(

@@ -7,13 +7,13 @@ import pytest
 
 import muster
 from muster import Mission, Robot, Rules, Task
-from muster.allocation.explanations import unassigned
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
-from muster.allocation.remedies import remedies
+from muster.allocation.bounds.feasibility import impossible
+from muster.allocation.reasons.explanations import unassigned
+from muster.allocation.remedies.remedies import remedies
 from muster.mission.events import Event
 from muster.mission.model import Lag
 from muster.mission.plan import Reason, Unassigned
+from muster.model.problem import Problem
 from muster.planning.judging import admits
 from muster.verification import verify
 

@@ -8,10 +8,10 @@ import pytest
 from tests.judged_plans import best_plan
 
 import muster
+from muster.allocation.bounds.work_shortfall import shortfalls
 from muster.allocation.exact import solve_exactly
-from muster.allocation.problem import Problem
-from muster.allocation.work_shortfall import shortfalls
 from muster.mission.model import Battery, Lag, Mission, Robot, Rules, Task
+from muster.model.problem import Problem
 from muster.planning.judging import admits
 from muster.verification import verify
 

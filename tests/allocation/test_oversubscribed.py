@@ -8,7 +8,7 @@ from functools import cache
 import pytest
 
 import muster
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 
 OBJECTIVES = ("total", "max", "total+max", "average")
 

@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 from tests.random_missions import random_mission
 
 import muster
-from muster.allocation.partition import divide, number_of_parts
-from muster.allocation.problem import Problem
-from muster.allocation.search import SEARCH, Parameters
+from muster.allocation.search.partition import divide, number_of_parts
+from muster.allocation.search.search import SEARCH, Parameters
+from muster.allocation.search.workers import Job, Limits, Threads
 from muster.allocation.stop import Stop
-from muster.allocation.workers import Job, Limits, Threads
 from muster.generation.uniform import large_mission
+from muster.model.problem import Problem
 
 
 @given(seed=st.integers(0, 10**6), parts=st.integers(2, 5))

@@ -10,10 +10,10 @@ from tests.random_missions import random_mission
 
 import muster
 from muster import core
-from muster.allocation.problem import Problem
 from muster.generation.uniform import large_mission
 from muster.library import mission_names, mission_path
 from muster.mission.model import Mission, Robot, Rules, Task, TravelTable
+from muster.model.problem import Problem
 
 
 def sent(problem):

@@ -3,12 +3,11 @@
 import pytest
 
 import muster
-from muster.allocation import proofs
-from muster.allocation.bounds import Bound, best_bound, sound_bound
-from muster.allocation.exact import solving
-from muster.allocation.problem import Problem
-from muster.allocation.proofs import prove
+from muster.allocation.bounds.of_objective import Bound, best_bound, sound_bound
+from muster.allocation.exact import proofs, solving
+from muster.allocation.exact.proofs import prove
 from muster.allocation.stop import Stop
+from muster.model.problem import Problem
 from muster.planning.judging import admits
 
 

@@ -14,18 +14,18 @@ from pathlib import Path
 import pytest
 
 import muster
-from muster.allocation import greedy
-from muster.allocation.partition import improve_in_parts
-from muster.allocation.problem import Problem
-from muster.allocation.ray_cluster import joined
-from muster.allocation.search import Parameters, anneal
+from muster.allocation.algorithms import greedy
+from muster.allocation.search.partition import improve_in_parts
+from muster.allocation.search.ray_cluster import joined
+from muster.allocation.search.search import Parameters, anneal
+from muster.allocation.search.workers import Job, Limits, Threads
 from muster.allocation.stop import Stop
-from muster.allocation.workers import Job, Limits, Threads
 from muster.cli.main import run
 from muster.generation.uniform import large_mission
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.reading.plan_reader import read_plan
 from muster.mission.yaml_writer import yaml_text
+from muster.model.problem import Problem
 
 if find_spec("ray") is None:  # it is imported by the tests that need it, as that takes half a second
     pytest.skip("needs the extra ray", allow_module_level=True)
@@ -138,7 +138,7 @@ def used_s(process):
 @contextmanager
 def once(both_work, act, monkeypatch):
     """Act while both nodes work on a part, or after two minutes; not if the block ends before. Workers may be slow."""
-    monkeypatch.setattr("muster.allocation.ray_cluster._RETURNED_WITHIN_S", 60.0)
+    monkeypatch.setattr("muster.allocation.search.ray_cluster._RETURNED_WITHIN_S", 60.0)
     over, until = threading.Event(), time.monotonic() + 120
 
     def wait():
@@ -274,7 +274,7 @@ class TestOfOneWhoHasJoined:
 
     @pytest.mark.long
     def test_a_part_whose_workers_die_keeps_its_routes(self, workers, caplog, monkeypatch):
-        monkeypatch.setattr("muster.allocation.partition._DIVISIONS", 1)  # in which two workers die and start
+        monkeypatch.setattr("muster.allocation.search.partition._DIVISIONS", 1)  # in which two workers die and start
 
         def die(seed):
             if seed == 2:
@@ -308,7 +308,7 @@ def test_addresses_where_no_cluster_is(address, why):
 
 
 def test_something_else_answers(monkeypatch):
-    monkeypatch.setattr("muster.allocation.ray_cluster._ANSWERED_WITHIN_S", 2.0)
+    monkeypatch.setattr("muster.allocation.search.ray_cluster._ANSWERED_WITHIN_S", 2.0)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"127.0.0.1:{silent.getsockname()[1]}"
         with pytest.raises(ParameterError, match="what is there is not the head of a Ray cluster"):

@@ -11,15 +11,15 @@ from tests.allocation.test_conflicts import crowded, judge, mission, robot, task
 from tests.mission.strategies import examples, tiny_missions
 from tests.random_missions import random_mission
 
-from muster.allocation import greedy
-from muster.allocation.problem import Problem
-from muster.allocation.remedies import changed, remedies, smallest, smallest_as_is
-from muster.allocation.remedy import Before
-from muster.allocation.rules.capacity import CapacityChange
-from muster.allocation.rules.suitability import LowScore
+from muster.allocation.algorithms import greedy
+from muster.allocation.remedies.remedies import changed, remedies, smallest, smallest_as_is
+from muster.allocation.remedies.remedy import Before
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission, Rules, TravelTable
 from muster.mission.plan import Plan, Route
+from muster.model.problem import Problem
+from muster.model.rules.capacity import CapacityChange
+from muster.model.rules.suitability import LowScore
 from muster.verification import verify
 
 ROUNDING = 1e-8

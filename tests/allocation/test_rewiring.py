@@ -8,10 +8,10 @@ from tests.timed_missions.missions import ignored_in, timed_mission
 
 import muster
 from muster import Mission, Plan, Robot, Route, Task
+from muster.allocation.algorithms.rewiring import rewire, rewired
 from muster.allocation.fixed import with_fixed_routes
-from muster.allocation.problem import Problem
-from muster.allocation.rewiring import rewire, rewired
 from muster.mission.errors import ParameterError
+from muster.model.problem import Problem
 
 
 def thesis_example():

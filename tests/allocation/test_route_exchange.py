@@ -6,9 +6,9 @@ import pytest
 
 import muster
 from muster import core
-from muster.allocation import greedy
-from muster.allocation.problem import Problem
-from muster.allocation.route_exchange import crossed
+from muster.allocation.algorithms import greedy
+from muster.allocation.algorithms.route_exchange import crossed
+from muster.model.problem import Problem
 
 
 def problem_of(name: str) -> Problem:

@@ -11,10 +11,10 @@ from tests.random_missions import random_mission
 
 import muster
 from muster import core
-from muster.allocation.problem import Problem
-from muster.allocation.search import Parameters, Variations, allocate
+from muster.allocation.search.search import Parameters, Variations, allocate
 from muster.allocation.stop import Stop
 from muster.generation.uniform import large_mission
+from muster.model.problem import Problem
 
 
 @settings(max_examples=400)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from muster.allocation.side_by_side import SideBySide
+from muster.allocation.search.side_by_side import SideBySide
 
 
 @dataclass

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from muster import core
-from muster.allocation.spanning import _tree_of_rows, never, spanning_tree
+from muster.allocation.bounds.spanning import _tree_of_rows, never, spanning_tree
 
 
 def legs_of(rng, n, *, gaps):

@@ -8,8 +8,8 @@ from tests.random_missions import random_mission
 
 import muster
 from muster import core
-from muster.allocation.problem import Problem
-from muster.allocation.strings import diversity, fitness, random_strings, ranking, read, roulette, string_of
+from muster.allocation.algorithms.strings import diversity, fitness, random_strings, ranking, read, roulette, string_of
+from muster.model.problem import Problem
 from muster_studies.alternatives import ipga, order_crossover
 
 

@@ -6,12 +6,12 @@ import pytest
 
 import muster
 from muster import Mission, Robot, Rules, Task, verify
-from muster.allocation.explanations import unassigned
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
-from muster.allocation.remedies import remedies, smallest_as_is
+from muster.allocation.bounds.feasibility import impossible
+from muster.allocation.reasons.explanations import unassigned
+from muster.allocation.remedies.remedies import remedies, smallest_as_is
 from muster.mission.model import Lag, TravelTable
 from muster.mission.plan import Plan, Route
+from muster.model.problem import Problem
 from muster.planning.explaining.explanations import admits
 
 

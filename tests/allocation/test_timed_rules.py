@@ -3,9 +3,9 @@
 import math
 
 from muster import Mission, Robot, Task
-from muster.allocation.problem import Problem
-from muster.allocation.timed_rules import TimedRules
 from muster.mission.model import Lag, TeamPart
+from muster.model.plan_model import TimedRules
+from muster.model.problem import Problem
 
 MISSION = Mission(
     robots=(

@@ -8,9 +8,9 @@ from tests.all_plans import ROUNDING, AllPlans
 from tests.mission.strategies import examples
 from tests.random_missions import random_mission, with_travel_tables
 
-from muster.allocation.problem import Problem
-from muster.allocation.usage_bounds import UsageBounds
+from muster.allocation.bounds.usage_bounds import UsageBounds
 from muster.mission.model import Mission, Robot, Task
+from muster.model.problem import Problem
 
 
 @pytest.mark.parametrize("tabled", [False, True])

@@ -7,11 +7,11 @@ import pytest
 
 from muster import core
 from muster.allocation.allocator import make_parameters
-from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_of
 from muster.allocation.stop import Stop
-from muster.allocation.waiting import NO_WAITING, Waiting
 from muster.mission.model import Mission, Robot, Rules, Task
+from muster.model.problem import Problem
+from muster.model.waiting import NO_WAITING, Waiting
 
 
 def problem_of(usage="distance", objective="total", speed=2.0):

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from muster.allocation.winners import LeastContested, Lowest, Sale
+from muster.allocation.auctions.winners import LeastContested, Lowest, Sale
 
 NONE = np.inf
 

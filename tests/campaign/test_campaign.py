@@ -2,7 +2,7 @@
 
 import pytest
 
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 from tests.action_missions import ACTIONS
 from tests.campaign.missions import case
 from tests.campaign.trial import trial

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import muster
 from muster.allocation.allocator import routes_of
-from muster.allocation.bounds import lower_bound
-from muster.allocation.conflicts import together
+from muster.allocation.bounds.feasibility import impossible
+from muster.allocation.bounds.of_objective import lower_bound
 from muster.allocation.exact import solve_exactly
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
+from muster.allocation.remedies.conflicts import together
+from muster.model.problem import Problem
 from muster.planning.judging import admits
 from muster.verification import verify
 from tests import trials

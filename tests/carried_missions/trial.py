@@ -4,9 +4,9 @@ from random import Random
 
 import muster
 from muster import core
-from muster.allocation.bounds import lower_bound
+from muster.allocation.bounds.of_objective import lower_bound
 from muster.allocation.exact import solve_exactly
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 from muster.planning.judging import admits
 from muster.verification import verify
 from tests import trials

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.usefixtures("folder", "processor_time")
 @pytest.fixture
 def processor_time(monkeypatch):
     """What else the machine does takes nothing from the time in which conflicts are looked for."""
-    monkeypatch.setattr("muster.allocation.conflicts.SystemClock", ProcessorClock)
+    monkeypatch.setattr("muster.allocation.remedies.conflicts.SystemClock", ProcessorClock)
 
 
 TWO = """\

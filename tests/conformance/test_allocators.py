@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from tests.random_missions import random_mission
 
 import muster
-from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.plan import REASONS
 from muster.mission.system.clock import VirtualClock
+from muster.model.problem import Problem
 
 every_allocator = pytest.mark.parametrize("allocator", ALLOCATORS)
 RULES = ("prerequisite", "suitability", "skill", "lock", "capacity")

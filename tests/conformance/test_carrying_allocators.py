@@ -8,10 +8,10 @@ from tests.carried_missions.missions import carried_mission
 
 import muster
 from muster.allocation.capabilities import those_that_can
-from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.model import Battery, Lag, Station
+from muster.model.problem import Problem
 from muster.verification import verify
 
 every_allocator = pytest.mark.parametrize("allocator", ALLOCATORS)

@@ -219,6 +219,6 @@ def test_the_body_of_the_api_has_the_fields_of_the_request():
 
 
 def test_the_bounds_are_those_that_can_be_proven():
-    from muster.allocation.proofs import PROOFS
+    from muster.allocation.exact.proofs import PROOFS
 
     assert BOUNDS == PROOFS

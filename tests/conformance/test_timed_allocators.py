@@ -11,10 +11,10 @@ from tests.timed_missions.missions import timed_mission
 
 import muster
 from muster.allocation.capabilities import _WORDS, ALL, FOR_GOOD, those_that_can
-from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.model import Battery, Lag
+from muster.model.problem import Problem
 
 every_allocator = pytest.mark.parametrize("allocator", ALLOCATORS)
 

@@ -11,8 +11,8 @@ from tests.random_missions import random_mission, with_travel_tables
 import muster
 from muster import core
 from muster.allocation.allocator import routes_of
-from muster.allocation.problem import Problem
 from muster.mission.model import OBJECTIVES
+from muster.model.problem import Problem
 
 
 @given(seed=st.integers(0, 10**6), tables=st.booleans(), objective=st.sampled_from(OBJECTIVES))

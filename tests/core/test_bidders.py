@@ -11,7 +11,7 @@ from tests.random_missions import random_mission, with_travel_tables
 
 import muster
 from muster import core
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 
 FIGURES = ("growth", "arrivals", "end")
 seeds = st.integers(0, 10**6)

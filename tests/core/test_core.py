@@ -11,9 +11,9 @@ from tests.random_missions import random_mission, with_travel_tables
 import muster
 from muster import core
 from muster.allocation.allocator import Outcome, finished_plan, routes_of
-from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.plan import Plan, Route
+from muster.model.problem import Problem
 
 seeds = st.integers(0, 10**6)
 STEPS = {

@@ -12,8 +12,8 @@ from tests.random_missions import random_mission
 
 import muster
 from muster import core
-from muster.allocation import greedy
-from muster.allocation.problem import Problem
+from muster.allocation.algorithms import greedy
+from muster.model.problem import Problem
 
 
 def tour(seed, tasks, robots=1, objective="total", **robot):

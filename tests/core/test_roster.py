@@ -9,8 +9,8 @@ import pytest
 
 import muster
 from muster import core
-from muster.allocation.problem import Problem
 from muster.mission.model import Mission
+from muster.model.problem import Problem
 
 _PLACES = 30.0
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.random_missions import random_mission
 
 from muster import core
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 
 
 def compiled(seed, **kwargs):

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from muster.allocation import search
-from muster.allocation.bounds import WHY
+from muster.allocation.bounds.of_objective import WHY
 from muster.allocation.registry import ALLOCATORS
+from muster.allocation.search import search
 from muster.cli.main import run, verbs
 from muster.mission.model import Battery, Map, Mission, Robot, Rules, Station, Task, Zone
 from muster.mission.reading.yaml_reader import parse_yaml
@@ -94,7 +94,9 @@ def test_every_argument_of_a_bound_is_described():
 
 def test_the_outputs_of_what_can_be_done(tmp_path, monkeypatch, capsys):
     pytest.importorskip("ortools")
-    monkeypatch.setattr("muster.allocation.conflicts.SystemClock", ProcessorClock)  # the load of the machine counts not
+    monkeypatch.setattr(
+        "muster.allocation.remedies.conflicts.SystemClock", ProcessorClock
+    )  # the load of the machine counts not
     text = (ROOT / "docs" / "what-can-be-done.md").read_text(encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     for mission in blocks(text, "yaml"):

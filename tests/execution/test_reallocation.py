@@ -7,9 +7,8 @@ from tests.execution.world import World
 from tests.random_missions import random_mission, with_travel_tables
 
 import muster
-from muster.allocation import greedy
+from muster.allocation.algorithms import greedy
 from muster.allocation.fixed import admissible_part
-from muster.allocation.problem import Problem
 from muster.execution.executor import Executor
 from muster.execution.replanning.reallocation import Reallocation, reasons_in_one_line
 from muster.execution.replanning.remaining_problem import remaining_problem
@@ -17,6 +16,7 @@ from muster.execution.replanning.travel import travel_of, way_of
 from muster.generation.uniform import large_mission
 from muster.mission.model import Action, Event, Map, Zone
 from muster.mission.plan import Reason
+from muster.model.problem import Problem
 
 
 class Kept(Reallocation):

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import assume, given
 from tests.mission.strategies import examples, tiny_missions
 
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
+from muster.allocation.bounds.feasibility import impossible
 from muster.cli.main import run
 from muster.mission.model import Mission, Robot, Rules, Task, TravelTable
 from muster.mission.plan import Plan, Route
+from muster.model.problem import Problem
 from muster.verification import verify
 
 

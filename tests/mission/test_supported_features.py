@@ -3,12 +3,12 @@
 import pytest
 
 import muster
-from muster.allocation.problem import Problem
 from muster.mission.errors import NotSupportedError
 from muster.mission.lanes import Lane, Lanes
 from muster.mission.model import Action, Mission, Robot, Rules, Task, TravelTable
 from muster.mission.plan import Plan
 from muster.mission.source import Source
+from muster.model.problem import Problem
 from muster.verification import verify
 
 

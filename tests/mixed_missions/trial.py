@@ -3,14 +3,14 @@
 from functools import cached_property
 
 import muster
-from muster.allocation.bounds import lower_bound
+from muster.allocation.bounds.feasibility import impossible
+from muster.allocation.bounds.of_objective import lower_bound
 from muster.allocation.capabilities import those_that_can
-from muster.allocation.conflicts import together
 from muster.allocation.exact import solve_exactly
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
+from muster.allocation.remedies.conflicts import together
 from muster.allocation.stop import Stop
 from muster.mission.system.clock import VirtualClock
+from muster.model.problem import Problem
 from muster.planning.explaining.explanations import left_out, one_task
 from muster.planning.judging import admits
 from muster.verification import verify

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import muster
-from muster.allocation.problem import Problem
 from muster.mission.model import Mission, Robot, Rules, Task
 from muster.mission.reading.plan_reader import plan_of
+from muster.model.problem import Problem
 from muster.motion.leg_times import LegTimes
 
 ROBOTS = (

@@ -200,7 +200,7 @@ def test_the_server_is_made_without_what_makes_it_large():
         "print([name for name in sys.argv[1:] if name in sys.modules])"
     )
     large = ("numpy", "scipy", "shapely", "matplotlib", "alembic", "aiohttp", "requests", "muster.core")
-    large += ("muster.simulation", "muster.allocation.problem", "muster.verification", "muster.execution")
+    large += ("muster.simulation", "muster.model.problem", "muster.verification", "muster.execution")
     found = subprocess.run([sys.executable, "-c", program, *large], capture_output=True, text=True, check=True)
     assert found.stdout == "[]\n"
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from muster.allocation.bids import BID_RULES
+from muster.allocation.auctions.bids import BID_RULES
 from muster.library import as_corrected, published
 from muster_studies.auction_5.auctions import BIDS
 from muster_studies.effort import Effort

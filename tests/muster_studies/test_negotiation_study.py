@@ -6,8 +6,8 @@ import pytest
 
 pytest.importorskip("msgpack", reason="the extra `net` is not installed")
 
-from muster.allocation.problem import Problem
 from muster.cli.main import run as muster
+from muster.model.problem import Problem
 from muster_studies.effort import Effort
 from muster_studies.negotiation.cost import AuctionRun, Cost, hold
 from muster_team.negotiators.methods import METHODS

@@ -10,10 +10,10 @@ from tests.random_missions import random_mission
 
 import muster
 from muster import Mission, Robot, Rules, Task
-from muster.allocation.problem import Problem
 from muster.cli.main import run as cli
 from muster.generation.uniform import large_mission
 from muster.mission.model import OBJECTIVES
+from muster.model.problem import Problem
 from muster_studies.effort import Effort
 from muster_studies.peers import peers_study
 from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, perform, runs_of, standings_of, undisturbed

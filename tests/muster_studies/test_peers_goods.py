@@ -7,11 +7,11 @@ import pytest
 
 import muster
 from muster import Mission, Robot, Rules, Task
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
+from muster.allocation.bounds.feasibility import impossible
 from muster.cli.main import run as cli
 from muster.generation.customers import customers_mission
 from muster.generation.transports import transports_mission
+from muster.model.problem import Problem
 from muster_studies.effort import Effort
 from muster_studies.instances.charging import CHARGING_REFERENCES, charging_mission
 from muster_studies.instances.goods import GOODS_REFERENCES, goods_instance

@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 
 import muster
-from muster.allocation.problem import Problem
 from muster.cli.main import run as cli
 from muster.generation.clustered import Clustered, clustered_mission
+from muster.model.problem import Problem
 from muster_studies.effort import Effort
 from muster_studies.instances.orienteering import (
     BEST_SCORES,

@@ -7,8 +7,8 @@ import pytest
 
 import muster
 from muster import Mission, Robot, Rules, Task
-from muster.allocation.problem import Problem
 from muster.cli.main import run as cli
+from muster.model.problem import Problem
 from muster_studies.effort import Effort
 from muster_studies.peers import peers_timed_study
 from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, mission_of, perform, runs_of

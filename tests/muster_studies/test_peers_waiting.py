@@ -6,9 +6,9 @@ import pytest
 
 import muster
 from muster import Mission, Robot, Rules, Task
-from muster.allocation.problem import Problem
 from muster.cli.main import run as cli
 from muster.generation.precedence import SHAPES, precedence_mission
+from muster.model.problem import Problem
 from muster_studies.effort import Effort
 from muster_studies.peers import peers_waiting_study
 from muster_studies.peers.contest import OWN, WAITING_PEER, Match, Result, Run, mission_of, perform

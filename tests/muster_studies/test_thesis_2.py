@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import pytest
 
 import muster
-from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
+from muster.model.problem import Problem
 from muster_studies.effort import Effort
 from muster_studies.registry import study_named
 from muster_studies.runs import Case, perform

@@ -1,8 +1,8 @@
 """Teams in a simulated network, for tests."""
 
 from muster import Mission, Robot, Task
-from muster.allocation.auction import Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import Parameters
+from muster.model.problem import Problem
 from muster_team.auctions.valuation import AuctionValuer
 from muster_team.negotiators.negotiator import Negotiator
 from muster_team.negotiators.participation import rules_of

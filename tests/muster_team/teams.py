@@ -4,9 +4,9 @@ import threading
 from random import Random
 
 import muster
-from muster.allocation.auction import AUCTION, Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import AUCTION, Parameters
 from muster.allocation.stop import Stop
+from muster.model.problem import Problem
 from muster_team.membership.members import Timeouts
 from muster_team.negotiators.participation import negotiator_of
 from muster_team.network.codec import Codec

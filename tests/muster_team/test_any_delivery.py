@@ -6,8 +6,8 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, 
 from tests.muster_team.networks import line_mission
 from tests.muster_team.trials.observer import Observer
 
-from muster.allocation.auction import Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import Parameters
+from muster.model.problem import Problem
 from muster_team.auctions.valuation import AuctionValuer
 from muster_team.negotiators.negotiator import Negotiator
 from muster_team.negotiators.participation import rules_of

@@ -12,7 +12,7 @@ from tests.muster_team.trials import replay
 from tests.muster_team.trials.observer import Observer
 from tests.muster_team.trials.scenario import scenario_of
 
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 from muster_team.auctions.capabilities import AGREED
 from muster_team.negotiators.negotiator import Negotiator
 

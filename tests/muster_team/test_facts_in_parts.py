@@ -7,8 +7,8 @@ import pytest
 from tests.muster_team.networks import agree, line_mission, owners, settled_team
 
 from muster import Task
-from muster.allocation.problem import Problem
 from muster.mission.errors import MissionError
+from muster.model.problem import Problem
 from muster_team.knowledge.epoch_base import agreed
 from muster_team.knowledge.facts import AT_ONCE
 from muster_team.knowledge.messages import Declaration, Fact

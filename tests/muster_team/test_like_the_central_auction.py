@@ -7,12 +7,12 @@ import pytest
 from tests.muster_team.networks import agree, line_mission, network
 
 import muster
-from muster.allocation.auction import AUCTION, Parameters
-from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import AUCTION, Parameters
+from muster.allocation.auctions.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.allocation.stop import Stop
 from muster.library import mission_names, mission_path
 from muster.mission.errors import MissingExtraError, ParameterError
+from muster.model.problem import Problem
 from muster_team.auctions.capabilities import AGREED
 from muster_team.negotiators.participation import plan_of
 

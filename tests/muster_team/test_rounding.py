@@ -7,9 +7,9 @@ from random import Random
 import pytest
 from tests.muster_team.networks import agree, owners
 
-from muster.allocation.auction import Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import Parameters
 from muster.generation.uniform import uniform_mission
+from muster.model.problem import Problem
 from muster_team.negotiators.participation import negotiator_of
 from muster_team.network.memory_network import LinkConditions, MemoryNetwork
 

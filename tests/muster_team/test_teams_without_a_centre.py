@@ -8,9 +8,9 @@ from tests.muster_team.networks import agree, all_agree, network, owners, settle
 from tests.muster_team.trials.random_missions import random_mission, with_times
 
 from muster import Mission, Robot, Task
-from muster.allocation.auction import AUCTION, Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import AUCTION, Parameters
 from muster.allocation.stop import Stop
+from muster.model.problem import Problem
 from muster.verification import verify
 from muster_team.negotiators.participation import plan_of
 

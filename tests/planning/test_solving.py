@@ -5,8 +5,8 @@ import dataclasses
 import pytest
 
 import muster
+from muster.allocation.algorithms.greedy import GREEDY
 from muster.allocation.allocator import Allocator, Outcome
-from muster.allocation.greedy import GREEDY
 from muster.allocation.stop import Stop
 from muster.mission.errors import MusterError, ParameterError
 from muster.planning.options import PlanningOptions, options_from

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from muster import core
-from muster.allocation.auction_terms import Terms
-from muster.allocation.auctioneer import Auctioneer
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction_terms import Terms
+from muster.allocation.auctions.auctioneer import Auctioneer
 from muster.allocation.registry import allocator_of
 from muster.allocation.stop import PATIENCE, Stop
 from muster.cli.main import run
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.system.clock import SystemClock, VirtualClock
+from muster.model.problem import Problem
 from muster.planning.budget import Budget, Pace
 from muster.planning.request import Request
 from muster.planning.solving import answer
@@ -68,7 +68,7 @@ def test_the_book_of_an_auction_that_was_cut_short_has_its_bids(name, team):
 
 def test_an_auction_announces_a_large_mission_piece_by_piece(monkeypatch):
     """So that no time limit passes while all robots look at all tasks."""
-    monkeypatch.setattr("muster.allocation.auctioneer._PAIRS_AT_ONCE", 3)
+    monkeypatch.setattr("muster.allocation.auctions.auctioneer._PAIRS_AT_ONCE", 3)
     problem = Problem.compile(mission())
     cut = Stop(time_limit=12.0, clock=Ticking())
     auctioneer = Auctioneer(problem, Terms(), until=cut)

@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 
 import muster
-from muster.allocation.auction import AUCTION
-from muster.allocation.greedy import GREEDY
-from muster.allocation.market import MARKET
-from muster.allocation.search import SEARCH
+from muster.allocation.algorithms.greedy import GREEDY
+from muster.allocation.auctions.auction import AUCTION
+from muster.allocation.auctions.market import MARKET
+from muster.allocation.search.search import SEARCH
 from muster.execution import Reallocation
 from muster.execution.replanning.travel import travel_of
 from muster.mission.errors import ParameterError

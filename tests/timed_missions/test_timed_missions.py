@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 
 from muster import Mission, Robot, Rules, Task
-from muster.allocation.remedy import Remedy
-from muster.allocation.rules.capacity import CapacityChange
-from muster.allocation.rules.window import LongerWindow
+from muster.allocation.remedies.remedy import Remedy
 from muster.mission.model import Lag, TeamPart
 from muster.mission.plan import Reason, Route, Unassigned
+from muster.model.rules.capacity import CapacityChange
+from muster.model.rules.window import LongerWindow
 from tests.timed_missions.every_plan import EveryPlan
 from tests.timed_missions.meaning import Meaning
 from tests.timed_missions.missions import OBJECTIVES, RULES, ignored_in, timed_mission

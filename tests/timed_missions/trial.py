@@ -4,18 +4,18 @@ from dataclasses import dataclass
 from random import Random
 
 import muster
-from muster.allocation.bounds import lower_bound
+from muster.allocation.bounds.feasibility import impossible
+from muster.allocation.bounds.of_objective import lower_bound
 from muster.allocation.capabilities import those_that_can
-from muster.allocation.conflicts import together
 from muster.allocation.exact import solve_exactly
-from muster.allocation.explanations import unassigned
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
+from muster.allocation.reasons.explanations import unassigned
 from muster.allocation.registry import ALLOCATORS
-from muster.allocation.remedies import remedies
+from muster.allocation.remedies.conflicts import together
+from muster.allocation.remedies.remedies import remedies
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan, Route
 from muster.mission.system.clock import VirtualClock
+from muster.model.problem import Problem
 from muster.planning.judging import admits
 from muster.verification import verify
 from tests import trials

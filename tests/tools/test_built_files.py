@@ -24,7 +24,7 @@ def test_what_a_wheel_lacks_or_has_too_much_is_found(tmp_path):
     with zipfile.ZipFile(tmp_path / "a.whl", "w") as archive:
         for name in ("muster/a.py", "muster/old.py", "muster/core/_core.so", "m.dist-info/RECORD"):
             archive.writestr(name, "")
-    expected = ["muster/a.py", "muster/page.css", "muster/core/search.cpp"]
+    expected = ["muster/a.py", "muster/page.css", "muster/core/plans/search.cpp"]
     assert wrong_in_wheel(tmp_path / "a.whl", expected) == ["lacks muster/page.css", "has muster/old.py"]
 
 

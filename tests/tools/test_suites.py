@@ -130,12 +130,12 @@ class TestTouched:
     def test_a_source_without_functions_touches_what_executes_its_importers(self):
         importer = "src/muster/allocation/registry.py"
         tests = {"tests/x.py::test": Executed(1.0, frozenset({importer}))}
-        assert touched.touched(["src/muster/allocation/greedy.py"], tests).tests == set(tests)
+        assert touched.touched(["src/muster/allocation/algorithms/greedy.py"], tests).tests == set(tests)
 
     @pytest.mark.parametrize(
         ("file", "test"),
         [
-            ("src/muster/core/search.cpp", "tests/core/test_local_search.py"),
+            ("src/muster/core/plans/search.cpp", "tests/core/test_local_search.py"),
             ("src/muster/report/page/player.js", "tests/report/page/test_page_in_a_browser.py"),
             ("src/muster_control/pages/map/map.js", "tests/muster_control/browser/test_story.py"),
             ("src/muster/library/missions/31T-6R50.yaml", "tests/library/test_missions.py"),
@@ -203,7 +203,7 @@ class TestCI:
         assert sites == 1
 
     def test_a_change_of_the_core_runs_all_under_the_sanitizers(self):
-        (step,) = (step for step in ci.steps(1, ["src/muster/core/draft.cpp"]) if step.name == "sanitizers")
+        (step,) = (step for step in ci.steps(1, ["src/muster/core/plans/draft.cpp"]) if step.name == "sanitizers")
         assert not step.environment
 
     def test_changed_pages_are_checked(self):

@@ -5,7 +5,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 
 import muster
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 
 
 def first_come(problem: Problem, most: int = 1) -> list[list[int]]:

@@ -9,8 +9,7 @@ from typing import Any, Protocol
 
 from muster import core
 from muster.allocation.capabilities import NONE, refuse_what_is_not_kept
-from muster.allocation.explanations import unassigned_of_plan
-from muster.allocation.problem import Problem
+from muster.allocation.reasons.explanations import unassigned_of_plan
 from muster.allocation.returned_routes import checked_routes
 from muster.allocation.stop import Stop
 from muster.mission.auction_book import Book
@@ -18,6 +17,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan, Route, RouteStop
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.model.problem import Problem
 
 Routes = list[list[int]]
 _MOST = 1_000_000  # of anything that a parameter counts

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from muster.allocation.problem import Problem
-from muster.allocation.rules import RULES
 from muster.mission.errors import ParameterError
+from muster.model.problem import Problem
+from muster.model.rules import RULES
 
 RETURN = "makespan-return"
 """That the makespan counts the ways to the ends of routes, `rules.makespan_includes_return`."""

@@ -12,10 +12,10 @@ from dataclasses import replace
 
 from muster import core
 from muster.allocation.allocator import Routes, admissible_routes
-from muster.allocation.problem import Problem
-from muster.allocation.rules.rule import ROUNDING
 from muster.mission.model import Task
 from muster.mission.plan import Plan
+from muster.model.problem import Problem
+from muster.model.rules.rule import ROUNDING
 
 
 def with_fixed_routes(problem: Problem, plan: Plan) -> Problem:

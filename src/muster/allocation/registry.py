@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from muster.allocation.algorithms.function_allocator import AllocatingFunction, allocator_from
 from muster.allocation.allocator import Allocator
 from muster.allocation.capabilities import offer
-from muster.allocation.function_allocator import AllocatingFunction, allocator_from
 from muster.mission.errors import ParameterError
 from muster.mission.system.plugins import Registry, require_own_name
 from muster.mission.value_types import shown

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from muster import core
-from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
+from muster.model.problem import Problem
 
 Routes = list[list[int]]
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "air.hpp"
-#include "lattice.hpp"
+#include "paths/air.hpp"
+#include "paths/lattice.hpp"
 
 namespace muster {
 

@@ -1,6 +1,6 @@
 """Carrying a plan out: dispatch, monitoring, re-allocation. Robots are reached through ports alone."""
 
-from muster.allocation.rewiring import rewire
+from muster.allocation.algorithms.rewiring import rewire
 from muster.execution.executor import Executor
 from muster.execution.record import Observer, Recorder
 from muster.execution.replanning.reallocation import Reallocation, Revision

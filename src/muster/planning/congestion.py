@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.allocation.waiting import Waiting
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
+from muster.model.waiting import Waiting
 from muster.traffic.journeys.forecast import Forecast, Forecaster
 from muster.traffic.journeys.passage_delays import PassageDelays
 from muster.traffic.managers import shared_roadmap
 from muster.traffic.names import drives
 
 if TYPE_CHECKING:
-    from muster.allocation.problem import Problem
+    from muster.model.problem import Problem
     from muster.traffic.mission_roadmap import MissionRoadmap
 
 _MOST = 3_000_000

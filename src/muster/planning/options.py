@@ -19,8 +19,8 @@ from muster.mission.value_types import shown
 from muster.traffic.names import DEFAULT, TRAFFIC
 
 if TYPE_CHECKING:
+    from muster.allocation.algorithms.function_allocator import AllocatingFunction
     from muster.allocation.allocator import Allocator
-    from muster.allocation.function_allocator import AllocatingFunction
 
 DEFAULT_ALLOCATOR = "search"
 BOUNDS = ("quick", "exact")

@@ -17,8 +17,8 @@ from muster.planning.solving import OnProgress, answer
 from muster.traffic.names import DEFAULT
 
 if TYPE_CHECKING:
+    from muster.allocation.algorithms.function_allocator import AllocatingFunction
     from muster.allocation.allocator import Allocator
-    from muster.allocation.function_allocator import AllocatingFunction
     from muster.allocation.parameter_types import AllocatorParameters
     from muster.verification import Verdict
 

@@ -14,9 +14,9 @@ from muster.traffic.names import may_reserve
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator, Outcome, Routes
-    from muster.allocation.bounds import Bound
-    from muster.allocation.problem import Problem
+    from muster.allocation.bounds.of_objective import Bound
     from muster.allocation.stop import Progress, Stop
+    from muster.model.problem import Problem
     from muster.planning.budget import Budget
     from muster.planning.congestion import SharedPassages
     from muster.verification import Verdict
@@ -66,7 +66,7 @@ def answer(request: Request, *, on_progress: OnProgress | None = None, interrupt
         if the judge rejects the plan: an internal error.
     """
     from muster.allocation.allocator import make_parameters
-    from muster.allocation.proofs import require_provable
+    from muster.allocation.exact.proofs import require_provable
     from muster.allocation.registry import allocator_of
     from muster.allocation.stop import Stop, usual_time_limit
     from muster.planning.budget import Budget, Pace
@@ -141,7 +141,7 @@ def _spread(
 
 def _compiled(request: Request) -> Problem:
     from muster.allocation.fixed import with_fixed_routes
-    from muster.allocation.problem import Problem
+    from muster.model.problem import Problem
 
     problem = Problem.compile(request.mission, request.objective, request.ignore)
     return (problem if request.fixed is None else with_fixed_routes(problem, request.fixed)).ready()
@@ -149,8 +149,8 @@ def _compiled(request: Request) -> Problem:
 
 def _quick_bound(request: Request, problem: Problem, budget: Budget) -> Bound | None:
     """The quick bound, where one is asked for."""
-    from muster.allocation.bounds import best_bound
-    from muster.allocation.proofs import is_small_enough
+    from muster.allocation.bounds.of_objective import best_bound
+    from muster.allocation.exact.proofs import is_small_enough
     from muster.allocation.stop import Stop
 
     if request.bound is None or not is_small_enough(problem):
@@ -162,8 +162,8 @@ def _improved(
     request: Request, problem: Problem, plan: Plan, stop: Stop, quick: Bound | None, budget: Budget
 ) -> tuple[Plan, str]:
     """The plan rewired and with its bound, as far as that is asked for, and why the bound holds or is missing."""
-    from muster.allocation.proofs import prove
-    from muster.allocation.rewiring import rewire
+    from muster.allocation.algorithms.rewiring import rewire
+    from muster.allocation.exact.proofs import prove
 
     if request.rewire and not stop.interrupted:
         plan = rewire(problem, plan).plan
@@ -177,7 +177,7 @@ def _improved(
 
 def _with_bound(request: Request, problem: Problem, on_progress: OnProgress, quick: Bound | None) -> OnProgress:
     """A function that adds the bound to progress, and the time of an exact proof to its share."""
-    from muster.allocation.proofs import EXACT_TIME_LIMIT_S
+    from muster.allocation.exact.proofs import EXACT_TIME_LIMIT_S
 
     bound = math.inf if quick is None else quick.value
     proof_s = (request.time_limit or EXACT_TIME_LIMIT_S) if request.bound == "exact" else 0.0

@@ -22,7 +22,7 @@ from muster.traffic.journeys.forecast import Forecast
 from muster.traffic.journeys.passage_delays import PassageDelays
 
 if TYPE_CHECKING:
-    from muster.allocation.problem import Problem
+    from muster.model.problem import Problem
 
 Allocate = Callable[["Problem", Stop, Routes | None], Outcome]
 OnProgress = Callable[[Progress], None]

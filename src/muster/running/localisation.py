@@ -67,7 +67,7 @@ LEAST_SHARE, LEAST_TURN_SHARE, LEAST_TURN_PER_M = 0.01, 0.05, 0.05
 LEAST_SLIP = 0.02
 LEAST_RADPS = 0.001
 _TRACK_RADII, _NOMINAL_M = 0.287 / 0.3, 0.3
-"""As in `core/crowd_robot.hpp`: between the wheels, in radii; and the radius in place of one of 0."""
+"""As in `core/crowd/crowd_robot.hpp`: between the wheels, in radii; and the radius in place of one of 0."""
 
 
 def sensors_of(localise: Localise) -> Mapping[str, SensorParameters]:

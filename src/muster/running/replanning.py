@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from muster.allocation.allocator import make_parameters
 from muster.allocation.registry import allocator_of
-from muster.allocation.search import SEARCH
+from muster.allocation.search.search import SEARCH
 from muster.execution import Reallocation, Revision, Standing, travel_of
 from muster.execution.replanning.insertion import Insertion
 from muster.execution.replanning.reallocation import REPLANNING

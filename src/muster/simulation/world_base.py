@@ -1,4 +1,4 @@
-"""What all simulated worlds share: the core's crowd (`core/crowd_world.hpp`) chooses robots' velocities in each step.
+"""What all simulated worlds share: the core's crowd (`core/crowd/`) chooses robots' velocities in each step.
 
 The crowd has way points, collision avoidance, limits of speed, yaw rate and acceleration, and a right of way that
 leaves every robot room to brake.

@@ -17,9 +17,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from muster.allocation.allocator import Allocator, Outcome, Routes
-from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
 from muster.mission.values.ranges import require_within
+from muster.model.problem import Problem
 from muster_studies.alternatives.motivation import Team
 
 

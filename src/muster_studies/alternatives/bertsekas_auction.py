@@ -14,13 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.allocation.allocator import Allocator, Outcome, Routes
-from muster.allocation.auction_terms import BidTerms
-from muster.allocation.auctioneer import Auctioneer, OnRound
-from muster.allocation.book_keeper import book_of
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction_terms import BidTerms
+from muster.allocation.auctions.auctioneer import Auctioneer, OnRound
+from muster.allocation.auctions.book_keeper import book_of
+from muster.allocation.auctions.winners import Floats, Sale
 from muster.allocation.stop import Stop
-from muster.allocation.winners import Floats, Sale
 from muster.mission.values.ranges import require_within
+from muster.model.problem import Problem
 from muster_studies.alternatives.assignment_prices import assign
 
 

@@ -12,12 +12,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from muster.allocation.allocator import Allocator, Outcome, Routes
-from muster.allocation.auction_terms import BidTerms
-from muster.allocation.auctioneer import Auctioneer, OnRound
-from muster.allocation.book_keeper import book_of
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction_terms import BidTerms
+from muster.allocation.auctions.auctioneer import Auctioneer, OnRound
+from muster.allocation.auctions.book_keeper import book_of
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
+from muster.model.problem import Problem
 
 ORDERS = ("mission", "priority")
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from muster.allocation.allocator import Routes
-from muster.allocation.problem import Problem
 from muster.mission.values.arrays import Floats
+from muster.model.problem import Problem
 
 _FREE = -1
 _ROUNDING = 1e-12  # as the core allows for a capacity that is filled exactly

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from muster.allocation.allocator import make_parameters
-from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_named
 from muster.allocation.stop import Stop
 from muster.mission.auction_book import Bid
 from muster.mission.plan import Plan
+from muster.model.problem import Problem
 from muster.verification import Verdict
 from muster_studies.runs import accepted, mission_named
 

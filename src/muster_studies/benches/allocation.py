@@ -9,11 +9,11 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from muster.allocation.genetic import Parameters, evolve, first_population
-from muster.allocation.problem import Problem
+from muster.allocation.algorithms.genetic import Parameters, evolve, first_population
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.generation.uniform import large_mission
+from muster.model.problem import Problem
 from muster.planning.judging import verify
 from muster.planning.loading import load
 from muster_studies.benches.measurement import Measurement

@@ -11,10 +11,10 @@ from collections import Counter
 from collections.abc import Sequence
 from random import Random
 
-from muster.allocation.auction import Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import Parameters
 from muster.generation.uniform import uniform_mission
 from muster.mission.errors import MusterError
+from muster.model.problem import Problem
 from muster_studies.benches.measurement import Measurement
 from muster_team.network.keys import new_key
 from muster_team.network.transport import TRANSPORTS

@@ -10,7 +10,7 @@ import time
 from dataclasses import replace
 from random import Random
 
-from muster.allocation.greedy import GREEDY
+from muster.allocation.algorithms.greedy import GREEDY
 from muster.allocation.stop import Stop
 from muster.execution import Executor, Reallocation, Revision, travel_of
 from muster.execution.replanning.remaining_problem import RemainingMission, remaining_problem

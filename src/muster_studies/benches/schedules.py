@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import time
 
-from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.generation.ordered import ordered_mission
 from muster.generation.windows import windows_mission
 from muster.mission.system.clock import ProcessorClock
+from muster.model.problem import Problem
 from muster_studies.benches.measurement import Measurement
 from muster_studies.instances.lattice import lattice_mission
 from muster_studies.runs import accepted

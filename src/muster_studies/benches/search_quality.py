@@ -8,10 +8,10 @@ from importlib.resources import files
 
 import msgspec
 
-from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission
+from muster.model.problem import Problem
 from muster.planning.loading import load
 from muster.verification import Verdict
 from muster_studies.benches.measurement import Measurement

@@ -9,8 +9,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from muster.allocation.algorithms.function_allocator import AllocatingFunction
 from muster.allocation.allocator import Allocator, make_parameters
-from muster.allocation.function_allocator import AllocatingFunction
 from muster.allocation.registry import allocator_of
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.value_types import shown

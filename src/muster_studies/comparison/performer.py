@@ -17,7 +17,7 @@ from muster_studies.comparison.run import FAILED, NOT_APPLICABLE, Run, attempt, 
 from muster_studies.comparison.settings import Settings
 
 if TYPE_CHECKING:
-    from muster.allocation.problem import Problem
+    from muster.model.problem import Problem
 
 Trial = tuple[str, str, int]
 """The names of a mission and of an allocator, and a seed."""
@@ -91,7 +91,7 @@ class Performer:
         return self._allocators[name]
 
     def _problem(self, mission: str) -> Problem:
-        from muster.allocation.problem import Problem
+        from muster.model.problem import Problem
 
         if mission not in self._problems:
             while len(self._problems) >= _MOST_PROBLEMS:

@@ -11,9 +11,9 @@ from muster.verification import Verdict, verify
 
 if TYPE_CHECKING:
     from muster.allocation.allocator import Allocator
-    from muster.allocation.problem import Problem
     from muster.allocation.stop import Stop
     from muster.mission.plan import Plan
+    from muster.model.problem import Problem
     from muster_studies.comparison.settings import Settings
 
 DONE, NOT_APPLICABLE, FAILED, INVALID = STATUSES = "done", "not-applicable", "failed", "invalid"

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from functools import cache
 from random import Random
 
-from muster.allocation.problem import Problem
 from muster.allocation.registry import ALLOCATORS
 from muster.allocation.stop import Stop
 from muster.generation.uniform import uniform_mission
 from muster.mission.model import Mission
+from muster.model.problem import Problem
 from muster.verification import verify
 from muster_studies.effort import Effort
 from muster_studies.tables import Cell, Table

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import cache
 from statistics import fmean
 
-from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_named
 from muster.allocation.stop import Stop
 from muster.generation.clustered import Clustered, clustered_mission
@@ -21,6 +20,7 @@ from muster.generation.windows import windows_mission
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.system.clock import ProcessorClock
+from muster.model.problem import Problem
 from muster.verification import verify
 from muster_studies.instances.charging import charging_mission
 from muster_studies.instances.coalitions import SKILL_SETS

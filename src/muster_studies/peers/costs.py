@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from muster.allocation.problem import Floats, Problem
+from muster.model.problem import Floats, Problem
 
 Integers = npt.NDArray[np.int64]
 

@@ -12,10 +12,10 @@ import time
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from muster.allocation import greedy
+from muster.allocation.algorithms import greedy
+from muster.allocation.bounds.feasibility import usable_pairs
 from muster.allocation.exact.scale import whole_weights
-from muster.allocation.feasibility import usable_pairs
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 from muster.verification import verify
 from muster_studies.peers.instance import Instance, Routes
 from muster_studies.peers.peer import Answer, missing

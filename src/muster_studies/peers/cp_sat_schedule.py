@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import time
 
-from muster.allocation import greedy
+from muster.allocation.algorithms import greedy
 from muster_studies.peers.cp_sat import LNS, TREE
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer, missing

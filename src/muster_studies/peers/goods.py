@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from muster.allocation.problem import Problem
 from muster.mission.goods import ONLY, Amount, by_commodity
+from muster.model.problem import Problem
 
 Transport = tuple[int, int]
 """Two tasks of the instance: the one that takes a load on board, and the one that delivers it."""

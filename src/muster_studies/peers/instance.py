@@ -10,9 +10,9 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
+from muster.allocation.bounds.feasibility import impossible
 from muster.mission.plan import Plan, Route
+from muster.model.problem import Problem
 from muster_studies.peers.costs import Costs, time_costs, usage_costs
 from muster_studies.peers.goods import Goods, goods_of, unusual_goods
 

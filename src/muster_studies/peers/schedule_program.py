@@ -17,7 +17,7 @@ import numpy as np
 from ortools.sat.python import cp_model
 
 from muster.allocation.exact.program import run_until
-from muster.allocation.problem import Bools
+from muster.model.problem import Bools
 from muster_studies.peers.instance import Instance, Routes
 
 NEAR = 30

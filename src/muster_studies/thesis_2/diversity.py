@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from muster.allocation import genetic
+from muster.allocation.algorithms import genetic
+from muster.allocation.algorithms.strings import Decoded, Strings, diversity, random_strings
 from muster.allocation.allocator import Routes
-from muster.allocation.problem import Problem
 from muster.allocation.stop import Stop
-from muster.allocation.strings import Decoded, Strings, diversity, random_strings
+from muster.model.problem import Problem
 from muster_studies.alternatives import ipga, order_crossover
 from muster_studies.effort import Effort
 from muster_studies.runs import mission_named

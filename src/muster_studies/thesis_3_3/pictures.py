@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.allocation.problem import Problem
 from muster.allocation.registry import allocator_named
 from muster.allocation.stop import Stop
 from muster.mission.plan import Plan, Route
 from muster.mission.values.arrays import Floats
+from muster.model.problem import Problem
 from muster.report.figures.canvas import new_figure
 from muster_studies.descriptions import captioned
 from muster_studies.effort import Effort

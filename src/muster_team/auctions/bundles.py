@@ -15,10 +15,10 @@ from enum import Enum
 import numpy as np
 
 from muster.allocation.allocator import Routes
-from muster.allocation.consensus import Beliefs, Ledger
-from muster.allocation.consensus_bundle import Bidder, Parameters, ScoreClock, first_limit, layers
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.consensus import Beliefs, Ledger
+from muster.allocation.auctions.consensus_bundle import Bidder, Parameters, ScoreClock, first_limit, layers
 from muster.allocation.stop import Stop
+from muster.model.problem import Problem
 from muster_team.auctions.valuation import Resolution, TeamValuer
 from muster_team.knowledge.messages import Bid, RoundBids, Sold
 

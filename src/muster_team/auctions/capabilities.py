@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from muster.allocation.capabilities import FOR_GOOD, those_that_can
-from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Task
+from muster.model.problem import Problem
 from muster_team.knowledge.epoch_base import joint_among
 
 AGREED = FOR_GOOD - {"load", "battery"}

@@ -7,13 +7,13 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 import numpy as np
 
 from muster.allocation.allocator import Routes
-from muster.allocation.auction_terms import Terms
-from muster.allocation.auctioneer import Auctioneer
-from muster.allocation.book_keeper import bids_of_round
-from muster.allocation.problem import Problem
-from muster.allocation.winners import WINNER_RULES, Floats, Indices, Sale
+from muster.allocation.auctions.auction_terms import Terms
+from muster.allocation.auctions.auctioneer import Auctioneer
+from muster.allocation.auctions.book_keeper import bids_of_round
+from muster.allocation.auctions.winners import WINNER_RULES, Floats, Indices, Sale
 from muster.mission.auction_book import Award
 from muster.mission.auction_book import Bid as BookedBid
+from muster.model.problem import Problem
 from muster_team.knowledge.messages import Bid, RoundBids, Sold
 
 

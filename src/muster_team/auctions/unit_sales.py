@@ -13,8 +13,8 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from muster.allocation.allocator import Routes
-from muster.allocation.auction_terms import Terms
-from muster.allocation.coalitions import (
+from muster.allocation.auctions.auction_terms import Terms
+from muster.allocation.auctions.coalitions import (
     CoalitionAuction,
     CoalitionBid,
     CoalitionSale,
@@ -22,9 +22,9 @@ from muster.allocation.coalitions import (
     bids_of_round,
     in_turn,
 )
-from muster.allocation.problem import Problem
 from muster.mission.auction_book import Award
 from muster.mission.auction_book import Bid as BookedBid
+from muster.model.problem import Problem
 from muster_team.knowledge.messages import Bid, RoundBids, Sold
 
 

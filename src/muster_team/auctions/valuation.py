@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Protocol
 
 from muster.allocation.allocator import Routes
-from muster.allocation.auction_terms import Terms
+from muster.allocation.auctions.auction_terms import Terms
+from muster.allocation.auctions.coalitions import bid_of
 from muster.allocation.capabilities import NONE
-from muster.allocation.coalitions import bid_of
 from muster.allocation.fixed import admissible_part, with_past
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 from muster_team.auctions.capabilities import AGREED, refuse_what_is_not_agreed
 from muster_team.auctions.task_sales import TaskSales
 from muster_team.auctions.unit_sales import UnitSales

@@ -32,7 +32,7 @@ from muster_team.cli.auction_result import Agreement
 from muster_team.runs.negotiation import Negotiation
 
 if TYPE_CHECKING:
-    from muster.allocation.problem import Problem
+    from muster.model.problem import Problem
     from muster_team.negotiators.methods import Method
 
 _FILE = click.Path(path_type=Path)
@@ -86,7 +86,7 @@ def command(
     Without --robot the whole team runs on this machine. With --robot this is one robot of a team that runs elsewhere:
     the same MISSION and key, one process on each robot's computer.
     """
-    from muster.allocation.problem import Problem
+    from muster.model.problem import Problem
     from muster_team.auctions.capabilities import refuse_what_is_not_agreed
     from muster_team.negotiators.methods import method_named
 

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
+from muster.allocation.auctions.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.cli.options.common import Finite
 
 Verb = TypeVar("Verb", bound=Callable[..., Any])

@@ -9,9 +9,9 @@ from typing import Any
 
 import click
 
-from muster.allocation.problem import Problem
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.texts.near_matches import did_you_mean
+from muster.model.problem import Problem
 from muster_team.cli.auction_result import Agreement, by_kind
 from muster_team.negotiators.methods import Method
 from muster_team.negotiators.negotiator import Negotiator

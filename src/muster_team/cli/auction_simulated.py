@@ -7,8 +7,8 @@ from typing import Any
 
 import click
 
-from muster.allocation.problem import Problem
 from muster.mission.errors import MusterError, ParameterError
+from muster.model.problem import Problem
 from muster_team.cli.auction_result import Agreement
 from muster_team.negotiators.methods import Method
 from muster_team.negotiators.robot_view import view_of

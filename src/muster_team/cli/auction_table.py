@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 from muster_team.knowledge.messages import RoundBids, Sold
 from muster_team.processes.node import NodeStatus
 from muster_team.processes.team import Team

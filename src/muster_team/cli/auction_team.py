@@ -9,9 +9,9 @@ from typing import Any
 
 import click
 
-from muster.allocation.problem import Problem
 from muster.mission.errors import MusterError
 from muster.mission.texts.counting import counted
+from muster.model.problem import Problem
 from muster_team.cli.auction_result import Agreement, by_kind
 from muster_team.cli.auction_table import auction_table
 from muster_team.negotiators.methods import Method

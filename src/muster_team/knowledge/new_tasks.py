@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 
-from muster.allocation.problem import Problem
 from muster.mission.errors import MissionError
 from muster.mission.model import Task
 from muster.mission.records import Record, findings
 from muster.mission.source import IN_PYTHON
 from muster.mission.value_types import Fault, shown
 from muster.mission.yaml_writer import plain
+from muster.model.problem import Problem
 
 
 def content_of(task: Task) -> bytes:

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from muster.allocation.allocator import Allocator
-from muster.allocation.auction import AUCTION
-from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import AUCTION
+from muster.allocation.auctions.consensus_bundle import CONSENSUS_BUNDLE
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan
 from muster.mission.texts.near_matches import did_you_mean
+from muster.model.problem import Problem
 from muster_team.auctions.bundles import BundleValuer
 from muster_team.auctions.valuation import AuctionValuer
 from muster_team.negotiators.negotiator import Negotiator

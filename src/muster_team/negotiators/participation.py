@@ -8,16 +8,16 @@ from functools import partial
 from typing import Any
 
 from muster.allocation.allocator import Outcome, finished_plan
-from muster.allocation.auction import AUCTION
-from muster.allocation.auction_terms import Terms
-from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE
-from muster.allocation.consensus_bundle import Parameters as BundleParameters
-from muster.allocation.explanations import unassigned
+from muster.allocation.auctions.auction import AUCTION
+from muster.allocation.auctions.auction_terms import Terms
+from muster.allocation.auctions.consensus_bundle import CONSENSUS_BUNDLE
+from muster.allocation.auctions.consensus_bundle import Parameters as BundleParameters
 from muster.allocation.fixed import with_past
-from muster.allocation.problem import Problem
+from muster.allocation.reasons.explanations import unassigned
 from muster.allocation.stop import Stop
 from muster.mission.auction_book import Book
 from muster.mission.plan import Plan
+from muster.model.problem import Problem
 from muster_team.auctions.bundles import BundleValuer
 from muster_team.auctions.valuation import AuctionValuer, Valuer
 from muster_team.knowledge.effects import Memory

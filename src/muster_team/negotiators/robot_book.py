@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-from muster.allocation.auction_terms import Terms
-from muster.allocation.consensus import neighbours, score
-from muster.allocation.consensus_bundle import Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction_terms import Terms
+from muster.allocation.auctions.consensus import neighbours, score
+from muster.allocation.auctions.consensus_bundle import Parameters
 from muster.mission.auction_book import Award, Book, TakeBid
+from muster.model.problem import Problem
 from muster_team.auctions.bundles import BundleValuer
 from muster_team.auctions.task_sales import TaskSales
 from muster_team.auctions.unit_sales import UnitSales

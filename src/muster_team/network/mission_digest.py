@@ -8,9 +8,9 @@ from dataclasses import fields
 from hashlib import blake2b
 from typing import Any
 
-from muster.allocation.auction_terms import Terms
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction_terms import Terms
 from muster.mission.yaml_writer import plain
+from muster.model.problem import Problem
 from muster.motion.map_world import World
 
 DIGEST_BYTES = 16

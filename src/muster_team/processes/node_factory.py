@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 from muster_team.negotiators.methods import Method
 from muster_team.network.codec import Codec
 from muster_team.network.encryption import Seal

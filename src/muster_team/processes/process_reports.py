@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from muster.allocation.auction_terms import Terms
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction_terms import Terms
+from muster.model.problem import Problem
 from muster_team.knowledge.messages import Stage
 from muster_team.membership.members import Timeouts
 from muster_team.negotiators.robot_view import View

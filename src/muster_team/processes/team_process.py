@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from typing import Any
 
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 from muster_team.negotiators.methods import method_named
 from muster_team.negotiators.robot_view import view_of
 from muster_team.network.mission_digest import mission_digest

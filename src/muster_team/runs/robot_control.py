@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
-from muster.allocation.problem import Problem
 from muster.execution import ExecutionEvent, Executor, Revision, travel_of, way_of
 from muster.execution.peers import Gathering
 from muster.execution.replanning.reallocation import usage_ahead
@@ -17,6 +16,7 @@ from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Event, MovedTask, Task
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
+from muster.model.problem import Problem
 from muster.motion.port import RobotPort
 from muster.state import OtherEvent
 from muster.state.task_events import MISSED, Ends, TaskRefused

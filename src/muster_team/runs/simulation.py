@@ -9,12 +9,12 @@ from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-from muster.allocation.auction_terms import Terms
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction_terms import Terms
 from muster.execution import Recorder, Report, report_of
 from muster.execution.record import NoObserver
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission
+from muster.model.problem import Problem
 from muster.running.camera_search import camera_search_for, with_found
 from muster.running.observed_run import ObservedRun
 from muster.running.recorded_world import recorded_world, with_tracking

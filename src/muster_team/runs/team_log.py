@@ -7,13 +7,13 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import fields, replace
 from typing import Any
 
-from muster.allocation.problem import Problem
 from muster.execution import Observer
 from muster.execution.replanning.reallocation import why_left_out
 from muster.execution.reports.report import Account
 from muster.mission.model import Event
 from muster.mission.plan import Plan, Unassigned, teams_of
 from muster.mission.yaml_writer import plain
+from muster.model.problem import Problem
 from muster.motion.port import Telemetry
 from muster.state import ExecutionEvent, MissionState, OtherEvent, event_of
 from muster.state.event import KINDS

@@ -5,7 +5,7 @@ import pytest
 
 import muster
 from muster import core
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 from muster_studies.alternatives import ant_colony, contract_net, particle_swarm
 
 MARKETS = ("contract-net", "combinatorial-auction", "bertsekas-auction")

@@ -6,9 +6,9 @@ import pytest
 
 import muster
 from muster import Mission, ParameterError, Robot, Task
-from muster.allocation.consensus_bundle import CONSENSUS_BUNDLE, Parameters, layers
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.consensus_bundle import CONSENSUS_BUNDLE, Parameters, layers
 from muster.allocation.stop import Stop
+from muster.model.problem import Problem
 from muster_team.negotiators.methods import method_named
 from muster_team.negotiators.participation import bundler_of, plan_of_bundles
 from muster_team.negotiators.robot_view import view_of

@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 
 from muster import Event, Mission, Negotiation, Robot, Rules, Task, simulate
-from muster.allocation.auction import AUCTION
+from muster.allocation.auctions.auction import AUCTION
 from muster.allocation.capabilities import those_that_can
-from muster.allocation.problem import Problem
 from muster.mission.errors import ParameterError
 from muster.mission.model import Battery, Lag, TeamPart
+from muster.model.problem import Problem
 from muster_team.auctions.capabilities import refuse_mission, refuse_what_is_not_agreed
 from muster_team.negotiators.methods import METHODS
 

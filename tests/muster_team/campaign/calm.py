@@ -8,10 +8,10 @@ from tests.muster_team.networks import all_agree, network
 from tests.muster_team.trials.random_missions import random_mission, with_times
 from tests.trials import Report
 
-from muster.allocation.auction import AUCTION, Parameters
-from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import AUCTION, Parameters
+from muster.allocation.auctions.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.allocation.stop import Stop
+from muster.model.problem import Problem
 from muster.verification import verify
 from muster_team.negotiators.participation import plan_of
 from muster_team.runs.robot_control import LATENESS

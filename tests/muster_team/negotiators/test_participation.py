@@ -7,12 +7,12 @@ from tests.muster_team.networks import line_mission
 from tests.random_missions import random_mission
 
 from muster import load, verify
-from muster.allocation.auction import AUCTION, Parameters
-from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
-from muster.allocation.consensus_bundle import Parameters as BundleParameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import AUCTION, Parameters
+from muster.allocation.auctions.auction_terms import BIDS, PLACEMENTS, WINNERS
+from muster.allocation.auctions.consensus_bundle import Parameters as BundleParameters
 from muster.allocation.stop import Stop
 from muster.mission.reading.plan_reader import read_plan
+from muster.model.problem import Problem
 from muster_team.negotiators.participation import (
     bundler_of,
     negotiator_of,

@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 import muster
-from muster.allocation.auction import Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import Parameters
 from muster.mission.yaml_writer import yaml_text
+from muster.model.problem import Problem
 from muster_team.network.mission_digest import mission_digest
 
 MISSION = muster.load("auction-1")

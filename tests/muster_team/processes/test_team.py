@@ -10,11 +10,11 @@ from random import Random
 import pytest
 
 from muster import verify
-from muster.allocation.auction import AUCTION, Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import AUCTION, Parameters
 from muster.allocation.stop import Stop
 from muster.generation.uniform import uniform_mission
 from muster.mission.errors import MusterError
+from muster.model.problem import Problem
 from muster_team.negotiators.participation import plan_of_view
 from muster_team.network.keys import new_key
 from muster_team.network.transport import TRANSPORTS

@@ -2,8 +2,8 @@
 
 from collections import Counter
 
-from muster.allocation.auction import Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import Parameters
+from muster.model.problem import Problem
 from muster.simulation import KinematicWorld
 from muster_team.negotiators.participation import negotiator_of
 from muster_team.network.memory_network import LinkConditions, MemoryNetwork

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from muster import Event, Mission, Robot, Task
-from muster.allocation.auction import Parameters
+from muster.allocation.auctions.auction import Parameters
 from muster.execution.record import NoObserver
 from muster.mission.model import MovedTask
 from muster.running.state_estimation import with_state_estimation

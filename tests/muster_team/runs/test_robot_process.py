@@ -3,8 +3,8 @@
 from types import SimpleNamespace
 
 from muster import Mission, Robot, Task
-from muster.allocation.auction import Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import Parameters
+from muster.model.problem import Problem
 from muster.simulation import KinematicWorld
 from muster_team.negotiators.participation import negotiator_of
 from muster_team.runs.pipe_messages import BodyState, SteerCommand

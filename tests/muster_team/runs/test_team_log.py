@@ -3,12 +3,12 @@
 import pytest
 
 from muster import Event, Mission, Robot, Task
-from muster.allocation.problem import Problem
 from muster.execution import report_of
 from muster.execution.record import NoObserver
 from muster.mission.events import DelayedTask, MovedTask
 from muster.mission.plan import Plan, Reason, Route, Unassigned
 from muster.mission.records import specified
+from muster.model.problem import Problem
 from muster_team.runs.team_log import TeamLog
 
 MISSION = Mission(

@@ -10,7 +10,7 @@ import numpy as np
 from tests.muster_team.simulated_figures import suspicion
 from tests.muster_team.simulated_figures.teams import DELAY_S, all_agree, settled_team, team, time_until
 
-from muster.allocation.problem import Problem
+from muster.model.problem import Problem
 from muster_team.network.memory_network import LinkConditions, MemoryNetwork
 
 CUT_S = 15.0

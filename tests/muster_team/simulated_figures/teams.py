@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from random import Random
 
-from muster.allocation.auction import Parameters
-from muster.allocation.problem import Problem
+from muster.allocation.auctions.auction import Parameters
 from muster.generation.uniform import uniform_mission
+from muster.model.problem import Problem
 from muster_team.negotiators.negotiator import Negotiator
 from muster_team.negotiators.participation import negotiator_of
 from muster_team.network.memory_network import LinkConditions, MemoryNetwork

@@ -8,9 +8,9 @@ from dataclasses import replace
 from tests.muster_team.trials.observer import Observer, is_of_one_sale
 from tests.muster_team.trials.scenario import Scenario
 
-from muster.allocation.problem import Problem
 from muster.mission.model import Mission, Task
 from muster.mission.plan import Plan, Route
+from muster.model.problem import Problem
 from muster.verification import verify
 from muster_team.auctions.epoch import opening_of
 from muster_team.auctions.valuation import Valuer

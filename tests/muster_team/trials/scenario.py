@@ -12,9 +12,9 @@ from tests.muster_team.trials.faults import Incident, Links, incidents
 from tests.muster_team.trials.moving_partitions import moving_partitions
 from tests.muster_team.trials.random_missions import random_mission, with_times
 
-from muster.allocation import consensus_bundle
-from muster.allocation.auction import Parameters
-from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
+from muster.allocation.auctions import consensus_bundle
+from muster.allocation.auctions.auction import Parameters
+from muster.allocation.auctions.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.mission.model import Mission
 from muster_team.membership.members import Timeouts
 from muster_team.network.memory_network import LinkConditions

@@ -13,8 +13,8 @@ from tests.muster_team.trials.invariants import Invariants
 from tests.muster_team.trials.observer import Observer
 from tests.muster_team.trials.scenario import Scenario, scenario_of
 
-from muster.allocation.problem import Problem
 from muster.mission.errors import MissionError, ParameterError
+from muster.model.problem import Problem
 from muster_team.knowledge.effects import Memory
 from muster_team.knowledge.messages import Claim
 from muster_team.negotiators.methods import METHODS

@@ -6,8 +6,8 @@ from tests.report.page.conftest import MORE
 from tests.report.page.test_page import recording
 from tests.state.drawn_events import one_of_each, tied_site
 
-from muster.allocation.problem import Problem
 from muster.mission.model import Event, Mission, Robot, Task
+from muster.model.problem import Problem
 from muster.report.page import write_page
 from muster.report.record import RecordWriter, read_record
 from muster.state.event import KINDS

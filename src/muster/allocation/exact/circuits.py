@@ -14,7 +14,7 @@ import numpy as np
 from ortools.sat.python import cp_model
 
 from muster.allocation.exact.costs import Costs, ancestors
-from muster.allocation.problem import Bools, Problem
+from muster.model.problem import Bools, Problem
 
 Leg = tuple[int, int, int]
 """Of a robot, from one place to another."""

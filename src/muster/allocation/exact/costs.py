@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from muster.allocation.exact.scale import Scale, Whole
-from muster.allocation.problem import Bools, Floats, Problem
-from muster.allocation.rules import RULES
+from muster.model.problem import Bools, Floats, Problem
+from muster.model.rules import RULES
 
 Routes = Sequence[Sequence[int]]
 RealCosts = tuple[Floats, Floats, Floats, Floats]

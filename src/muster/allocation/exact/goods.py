@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
+from muster.allocation.bounds.route_bounds import RouteBounds
 from muster.allocation.exact.circuits import Circuits
 from muster.allocation.exact.costs import real_costs, real_usage
-from muster.allocation.problem import Problem
-from muster.allocation.route_bounds import RouteBounds
-from muster.allocation.rules.battery import Battery
-from muster.allocation.rules.load import Load, pickups
+from muster.model.problem import Problem
+from muster.model.rules.battery import Battery
+from muster.model.rules.load import Load, pickups
 
 _LOAD_UNITS = 2.0**24  # of the greatest amount
 _ROUNDING = 1e-9

@@ -9,7 +9,7 @@ import math
 from typing import Any
 
 from muster.allocation.exact.circuits import Circuits
-from muster.allocation.rules.min_tasks import least_tasks
+from muster.model.rules.min_tasks import least_tasks
 
 _ABILITY_UNITS = 2.0**24  # of the greatest need
 _ROUNDING = 1e-9

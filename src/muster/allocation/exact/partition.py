@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.allocation.exact.costs import ancestors, real_costs
-from muster.allocation.problem import Bools, Floats, Indices, Problem
+from muster.model.problem import Bools, Floats, Indices, Problem
 
 _MOST_PARTINGS = 300_000_000
 _ROUNDING = 1e-9

@@ -21,7 +21,7 @@ from muster.allocation.exact.costs import Costs, Routes, like_robots
 from muster.allocation.exact.goods import Cut, add_goods, most_detours, needs_stations
 from muster.allocation.exact.members import add_members
 from muster.allocation.exact.times import Times
-from muster.allocation.problem import Bools, Problem
+from muster.model.problem import Bools, Problem
 
 # Presolve that drops dominated plans, or probes, drops the best ones too in OR-Tools 9.15.6755, and makes wrong proofs.
 # A plan to begin with is near the best; what takes time is the proof.

@@ -10,7 +10,7 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from muster.allocation.problem import Floats, Problem
+from muster.model.problem import Floats, Problem
 
 Whole = npt.NDArray[np.int64]
 _RANGE = 2.0**36  # of sums over a route

@@ -13,18 +13,18 @@ from typing import TYPE_CHECKING
 
 from muster import core
 from muster.allocation.allocator import Routes
-from muster.allocation.bounds import best_bound, sound_bound
+from muster.allocation.bounds.feasibility import impossible, usable_pairs
+from muster.allocation.bounds.of_objective import best_bound, sound_bound
 from muster.allocation.exact.costs import real_costs, real_usage
 from muster.allocation.exact.partition import few_partings, least_average
 from muster.allocation.exact.scale import whole_weights
-from muster.allocation.feasibility import impossible, usable_pairs
-from muster.allocation.problem import Problem
-from muster.allocation.rules.rule import ROUNDING
-from muster.allocation.witness_plans import Judge, bare_plan
+from muster.allocation.search.witness_plans import Judge, bare_plan
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan, Route
 from muster.mission.system.clock import Clock, SystemClock
 from muster.mission.system.extras import needs_extra
+from muster.model.problem import Problem
+from muster.model.rules.rule import ROUNDING
 
 if TYPE_CHECKING:
     from muster.allocation.exact.goods import Cut

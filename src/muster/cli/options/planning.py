@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from muster.allocation.auction_terms import BIDS, PLACEMENTS, WINNERS
+from muster.allocation.auctions.auction_terms import BIDS, PLACEMENTS, WINNERS
 from muster.cli.options.common import Verb, ignore_option, objective_option, settings_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission

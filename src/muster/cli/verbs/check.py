@@ -28,7 +28,7 @@ from muster.mission.texts.counting import counted
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
-    from muster.allocation.conflicts import Together
+    from muster.allocation.remedies.conflicts import Together
     from muster.mission.plan import Unassigned
     from muster.motion.actions.unseen_places import Unseen
     from muster.planning.explaining import Possible
@@ -162,7 +162,7 @@ def _print_unseen(unseen: tuple[Unseen, ...], errors: Sequence[Finding]) -> None
 
 def _print_never_used(mission: Mission, ignored: Collection[str]) -> None:
     """Print on standard error the robots that a rule keeps from doing anything."""
-    from muster.allocation.rules import RULES
+    from muster.model.rules import RULES
 
     for rule in RULES:
         for robot in mission.robots if rule.word not in ignored else ():

@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from muster.allocation.algorithms.insertion import inserted
 from muster.allocation.allocator import Routes
 from muster.allocation.fixed import admissible_part
-from muster.allocation.insertion import inserted
-from muster.allocation.problem import Problem
 from muster.execution.replanning.reallocation import (
     Revision,
     nobody,
@@ -23,6 +22,7 @@ from muster.execution.replanning.reallocation import (
 )
 from muster.execution.replanning.remaining_problem import RemainingMission, remaining_problem
 from muster.execution.replanning.travel import Travel
+from muster.model.problem import Problem
 
 _BETTER = 1e-6
 """By which share of the objective routes must be better to be taken over."""

@@ -11,12 +11,11 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any
 
+from muster.allocation.algorithms.rewiring import rewired
 from muster.allocation.allocator import Allocator, Routes
-from muster.allocation.explanations import unassigned
 from muster.allocation.fixed import admissible_part
-from muster.allocation.problem import Problem
-from muster.allocation.rewiring import rewired
-from muster.allocation.search import SEARCH, Parameters
+from muster.allocation.reasons.explanations import unassigned
+from muster.allocation.search.search import SEARCH, Parameters
 from muster.allocation.stop import Stop
 from muster.execution.replanning.remaining_problem import RemainingMission, RemainingProblem, remaining_problem
 from muster.execution.replanning.route_ahead import RouteAhead, route_ahead, stops_of
@@ -25,6 +24,7 @@ from muster.execution.robots.station_calls import Call
 from muster.mission.errors import ParameterError
 from muster.mission.plan import RouteStop, Unassigned, teams_of
 from muster.mission.system.clock import VirtualClock
+from muster.model.problem import Problem
 from muster.state.reasons import in_one_line, reasons_in_one_line
 
 RobotsOf = Mapping[int, frozenset[int]]

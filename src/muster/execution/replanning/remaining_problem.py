@@ -14,15 +14,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from muster.allocation.charges import Charge
 from muster.allocation.fixed import admissible_alone, with_fixed_routes
-from muster.allocation.problem import Problem
 from muster.execution.replanning.relations import Binding
 from muster.execution.replanning.travel import Spot, Travel
 from muster.mission.goods import Amount, as_amount, by_commodity
 from muster.mission.model import Mission, Robot, Station, Task
 from muster.mission.plan import Plan, Route
 from muster.mission.task_relations import units_of
+from muster.model.charges import Charge
+from muster.model.problem import Problem
 from muster.motion.port import Place
 from muster.state.reasons import in_one_line
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from muster.allocation.allocator import scheduled
-from muster.allocation.problem import Problem
 from muster.execution.robots.station_calls import Call, in_one_visit, tasks_and_calls
 from muster.mission.plan import RouteStop
+from muster.model.problem import Problem
 
 
 @dataclass(frozen=True)

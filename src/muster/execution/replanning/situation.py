@@ -6,7 +6,6 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-from muster.allocation.charges import Charge
 from muster.execution.replanning.relations import binding_of, narrowed, with_whole_team
 from muster.execution.replanning.remaining_problem import RemainingMission, RobotSnapshot
 from muster.execution.replanning.transports import deliveries_aboard, load_after_work, on_board, transports
@@ -19,6 +18,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.plan import Plan, Reason, Route, RouteStop, Unassigned
 from muster.mission.value_types import shown
+from muster.model.charges import Charge
 from muster.state.goods_ledger import GoodsLedger
 from muster.state.task_ledger import Ledger, task_as_it_holds
 

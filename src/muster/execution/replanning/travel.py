@@ -10,10 +10,10 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from muster.allocation.lengths import Measured
-from muster.allocation.problem import Problem
 from muster.execution.robots.task_motion import Way, place, straight
 from muster.mission.model import Mission, Robot, TravelTable
+from muster.model.lengths import Measured
+from muster.model.problem import Problem
 from muster.motion.map_world import body_of
 from muster.motion.path import NoPath
 from muster.motion.paths.robot_paths import RobotPaths

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from muster.allocation.bottleneck import matched
 from muster.mission.model import Robot, Task, TeamPart
+from muster.model.bottleneck import matched
 
 _ROUNDING = 1e-9  # relative; by which abilities may be below what is needed
 

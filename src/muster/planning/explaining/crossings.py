@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations, takewhile
 
-from muster.allocation.problem import Problem
 from muster.mission.model import Robot, Task
+from muster.model.problem import Problem
 from muster.motion.actions import TaskMotion, plan
 from muster.traffic.blockages.impossible_crossings import Crossings, Swap
 from muster.traffic.mission_roadmap import MissionRoadmap

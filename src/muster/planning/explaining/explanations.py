@@ -7,18 +7,18 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from muster.allocation.allocator import routes_of
-from muster.allocation.conflicts import without_search
-from muster.allocation.explanations import Alternative, alternatives, unassigned
-from muster.allocation.problem import Problem
-from muster.allocation.remedies import remedies, smallest_as_is
-from muster.allocation.remedy import Remedy
+from muster.allocation.bounds.work_shortfall import Shortfall
+from muster.allocation.reasons.explanations import Alternative, alternatives, unassigned
+from muster.allocation.remedies.conflicts import without_search
+from muster.allocation.remedies.remedies import remedies, smallest_as_is
+from muster.allocation.remedies.remedy import Remedy
 from muster.allocation.stop import Stop
-from muster.allocation.work_shortfall import Shortfall
 from muster.mission.auction_book import Award
 from muster.mission.errors import Finding, ParameterError, PlanError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Unassigned
 from muster.mission.texts.near_matches import did_you_mean
+from muster.model.problem import Problem
 from muster.planning.judging import admits
 from muster.verification import RouteFigures, Verdict, verify
 

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from muster.allocation.conflicts import Conflict, Together, together, without_search
-from muster.allocation.feasibility import impossible
-from muster.allocation.problem import Problem
+from muster.allocation.bounds.feasibility import impossible
+from muster.allocation.bounds.work_shortfall import Shortfall
+from muster.allocation.remedies.conflicts import Conflict, Together, together, without_search
 from muster.allocation.stop import Stop
-from muster.allocation.work_shortfall import Shortfall
 from muster.mission.model import Mission, Station
 from muster.mission.plan import Reason, Unassigned
+from muster.model.problem import Problem
 from muster.motion.actions.unseen_places import Unseen
 from muster.motion.map_world import body_of
 from muster.motion.maps.free_points import free

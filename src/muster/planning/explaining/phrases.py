@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from muster.allocation.explanations import Alternative, without_bid
-from muster.allocation.problem import Problem
-from muster.allocation.remedies import smallest
-from muster.allocation.remedy import Remedy
-from muster.allocation.work_shortfall import Shortfall
+from muster.allocation.bounds.work_shortfall import Shortfall
+from muster.allocation.reasons.explanations import Alternative, without_bid
+from muster.allocation.remedies.remedies import smallest
+from muster.allocation.remedies.remedy import Remedy
 from muster.mission.auction_book import Award, Book
 from muster.mission.goods import shown_amounts
+from muster.model.problem import Problem
 from muster.planning.explaining.explanations import OneTask
 from muster.verification import Stop
 

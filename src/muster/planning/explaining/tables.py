@@ -6,12 +6,12 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from muster.allocation.problem import Problem
-from muster.allocation.remedy import Remedy
+from muster.allocation.remedies.remedy import Remedy
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.texts.counting import counted
+from muster.model.problem import Problem
 from muster.planning.explaining.explanations import LeftOut, OneTask, left_out, one_task, require_fit
 from muster.planning.explaining.phrases import (
     award_text,

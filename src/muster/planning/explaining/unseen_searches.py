@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from muster.allocation.feasibility import usable_pairs
-from muster.allocation.problem import Problem
+from muster.allocation.bounds.feasibility import usable_pairs
 from muster.mission.errors import Finding
 from muster.mission.model import Camera, Mission, Task
 from muster.mission.plan import Plan
 from muster.mission.records import findings
 from muster.mission.value_types import Fault
+from muster.model.problem import Problem
 from muster.motion.actions.raster_search import RasterSearch
 from muster.motion.actions.unseen_places import Unseen, unseen
 

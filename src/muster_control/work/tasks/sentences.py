@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from muster.allocation.explanations import Alternative
+from muster.allocation.reasons.explanations import Alternative
 from muster.planning.explaining.explanations import LeftOut, OneTask
 from muster.planning.explaining.phrases import award_text, ignored, place, reserve, short, smallest_change
 

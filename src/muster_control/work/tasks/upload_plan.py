@@ -7,10 +7,10 @@ from dataclasses import replace
 from typing import Any
 
 from muster.allocation.allocator import routes_of
-from muster.allocation.explanations import unassigned
-from muster.allocation.problem import Problem
+from muster.allocation.reasons.explanations import unassigned
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Unassigned
+from muster.model.problem import Problem
 from muster.verification import Verdict, verify
 from muster_control.work.missions import mission_of, plan_of
 

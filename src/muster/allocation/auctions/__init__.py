@@ -1,0 +1,1 @@
+"""Auctions and markets in one process: bids, winners, books of sales."""

@@ -1,0 +1,90 @@
+"""The latest ends of tasks by what waits for them: an auction that sells one by one looks ahead by these.
+
+Backward pass of the critical-path method [kelley1959] through windows, deadlines and lags: a task has to end so early
+that all that waits for it can still be in time, as far as anybody may do that.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from graphlib import TopologicalSorter
+
+import numpy as np
+
+from muster import core
+from muster.model.plan_model import TimedRules
+from muster.model.problem import Floats, Problem
+
+_TIE = 1e-12
+"""By how much a task may begin later and is not late, relative; less than the core allows."""
+
+
+class LatestEnds:
+    """The latest ends of a problem's tasks, and the problem that has them as deadlines."""
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem, rules = problem, problem.timed_rules
+        self._own = rules.deadline
+        self._ends = _latest_ends(problem, rules)
+        self._bound: dict[frozenset[int], Problem] = {}
+
+    @property
+    def any(self) -> bool:
+        """Whether a task has to end sooner than its own deadline says."""
+        return bool((self._ends < self._own).any())
+
+    def binding(self, routes: Sequence[Sequence[int]]) -> Problem:
+        """The problem with these ends as deadlines, where routes that have a schedule keep them."""
+        stops = core.Inspection(self._problem.core, [list(route) for route in routes]).stops or []
+        late = frozenset(
+            task for route in stops for task, _, begin, end in route if self._is_late(task, begin, end - begin)
+        )
+        if late not in self._bound:
+            self._bound = {late: self._with_deadlines(late)}
+        return self._bound[late]
+
+    def _is_late(self, task: int, begin: float, lasts: float) -> bool:
+        latest = float(self._ends[task]) - lasts
+        return begin > latest + _TIE * max(1.0, latest)
+
+    def _with_deadlines(self, late: frozenset[int]) -> Problem:
+        ends = [
+            float(own if j in late else end) for j, (own, end) in enumerate(zip(self._own, self._ends, strict=True))
+        ]
+        tasks = tuple(
+            replace(task, deadline_s=end if math.isfinite(end) else None)
+            for task, end in zip(self._problem.tasks, ends, strict=True)
+        )
+        return replace(self._problem, tasks=tasks, known=self._problem.measured)
+
+
+def _latest_ends(problem: Problem, rules: TimedRules) -> Floats:
+    """(n,) seconds; inf: nothing binds a task."""
+    work = np.array([problem.work_seconds(i) for i in range(len(problem.robots))])
+    shortest = np.where(problem.allowed, work, math.inf).min(axis=0, initial=math.inf)
+    longest = np.where(problem.allowed, work, 0.0).max(axis=0, initial=0.0)
+    before = {u: {rules.unit[k] for j in unit for k in problem.prerequisites[j]} for u, unit in enumerate(rules.units)}
+    ends = rules.deadline.copy()
+    for u in reversed(list(TopologicalSorter(before).static_order())):
+        unit = rules.units[u]
+        if np.isinf(shortest[unit]).any():
+            continue  # nobody may do one of them
+        begin = min(_last_begin(rules, j, float(ends[j] - shortest[j])) for j in unit)
+        if begin < 0.0:
+            continue  # it is too late from the first
+        for j in unit:
+            ends[j] = min(ends[j], begin + longest[j])
+            for k, after, _ in rules.lags(j):
+                if after <= begin:  # else it is too late whenever the other ends
+                    ends[k] = min(ends[k], begin - after)
+    return ends
+
+
+def _last_begin(rules: TimedRules, j: int, latest: float) -> float:
+    """The last time up to `latest` at which work on a task may begin; -inf: none is."""
+    windows = rules.windows[j]
+    return max(
+        (min(latest, closes) for opens, closes in windows if opens <= latest), default=-math.inf if windows else latest
+    )

@@ -1,0 +1,369 @@
+"""Lower bounds of usage and times of robots and tasks, over all admissible plans."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.allocation.bounds.gap_cycles import lag_cycle
+from muster.model.bottleneck import bottleneck
+from muster.model.plan_model import ROUNDING, TimedRules
+from muster.model.problem import Bools, Floats, Problem
+from muster.model.rules.deadline import too_late
+from muster.model.rules.times import spans
+from muster.model.rules.window import closed
+
+_MOST_ROUNDS = 50  # of narrowing bounds; they hold whenever it ends
+_MOST_NARROWED = 2_000_000  # pairs times robots (or tasks) up to which bounds are narrowed again for each of these
+
+
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """What no admissible plan is below.
+
+    Parameters
+    ----------
+    usage
+        (m, n) the least usage of any route of a robot with a task in it; inf where there is none.
+    usable
+        (m, n) the pairs that may be in an admissible plan, as far as is known.
+    arrival, home
+        (m, n) seconds until a robot can be at a task, and from there to the end of its route; empty: nothing is timed.
+    ready
+        (n,) seconds until everything is there that work on a task needs, whoever does it; its windows not looked at.
+    begin
+        (n,) seconds until work on a task begins; inf: never.
+    awaited
+        for each task the prerequisite whose end is the latest of what it waits for; None: a robot is.
+    steps
+        the bounds by which pairs were excluded before, in this order, each with the pairs that were left until then.
+    """
+
+    problem: Problem
+    usage: Floats
+    usable: Bools
+    arrival: Floats
+    home: Floats
+    ready: Floats
+    begin: Floats
+    awaited: tuple[int | None, ...]
+    steps: tuple[Limits, ...] = ()
+
+    @property
+    def rules(self) -> TimedRules:
+        return self.problem.timed_rules
+
+    @property
+    def is_timed(self) -> bool:
+        return bool(self.arrival.size)
+
+    @cached_property
+    def work(self) -> Floats:
+        """(m, n) seconds."""
+        return np.array([self.problem.work_seconds(i) for i in range(len(self.problem.robots))])
+
+    @cached_property
+    def shortest_work(self) -> Floats:
+        """(n,) the least seconds of work of any robot or team."""
+        allowed = np.where(self.problem.allowed, self.work, math.inf)
+        found = [_of_team(self.rules, u, allowed) for u in range(len(self.rules.units))]
+        shortest = np.array([found[self.rules.unit[j]][j] for j in range(len(self.problem.tasks))])
+        return np.where(np.isfinite(shortest), shortest, 0.0)
+
+    @cached_property
+    def longest_work(self) -> Floats:
+        """(n,) the most seconds of work of any robot."""
+        return np.asarray(np.where(self.problem.allowed, self.work, 0.0).max(axis=0, initial=0.0))
+
+    @cached_property
+    def pair_ready(self) -> Floats:
+        """(m, n) seconds until a robot is at a task and everything else is there."""
+        return np.maximum(self.arrival, self.ready)
+
+    @cached_property
+    def pair_begin(self) -> Floats:
+        """(m, n) seconds until a robot begins work on a task; inf: never."""
+        columns = [self.rules.next_begin(j, self.pair_ready[:, j]) for j in range(len(self.problem.tasks))]
+        return np.maximum(np.array(columns).T.reshape(self.usable.shape), self.begin)
+
+    @cached_property
+    def pair_end(self) -> Floats:
+        """(m, n) seconds until a robot has ended work on a task, with its team."""
+        return self.pair_begin + np.maximum(self.work, self.shortest_work)
+
+    @cached_property
+    def alone(self) -> Bools:
+        """(m, n) the pairs that may be in an admissible plan, as far as rules tell that look at one robot."""
+        return self._kept_by(self.problem.allowed, about_one=True)
+
+    def possible(self) -> Bools:
+        """(m, n) the pairs that may be in an admissible plan."""
+        return self._kept_by(self._kept_by(self.usable, about_one=True), about_one=False)
+
+    def _kept_by(self, usable: Bools, *, about_one: bool) -> Bools:
+        for rule in self.problem.rules:
+            possible = rule.possible(self) if rule.about_one == about_one else None
+            usable = usable if possible is None else usable & possible
+        return np.asarray(usable)
+
+    def that_excluded(self, i: int, j: int) -> Limits:
+        """These bounds with the times by which a pair was excluded; later ones may hold for the pairs left alone."""
+        return self._at_steps[int(self._survived[i, j])]
+
+    def rule_that_excluded(self, i: int, j: int) -> tuple[str, Limits] | None:
+        """The rule that excluded a pair, with the bounds and the pairs left at that time; None: none, as far as known.
+
+        Rules that look at one robot come first, as they did then.
+        """
+        survived = int(self._survived[i, j]) if self.steps else 0
+        if survived >= len(self.steps) or not self.problem.allowed[i, j]:
+            return None
+        step = self.steps[survived]
+        for rule in sorted(self.problem.rules, key=lambda rule: not rule.about_one):
+            possible = rule.possible(step)
+            if possible is not None and not possible[i, j]:
+                return rule.word, step
+        return None
+
+    @cached_property
+    def _at_steps(self) -> tuple[Limits, ...]:
+        steps = (replace(one, usable=self.usable, steps=self.steps[:k]) for k, one in enumerate(self.steps))
+        return (*steps, self)
+
+    @cached_property
+    def _survived(self) -> npt.NDArray[np.int_]:
+        """(m, n) how many steps left a pair in."""
+        left = [step.usable for step in (*self.steps[1:], self)]
+        return np.asarray(np.sum(left, axis=0), dtype=np.int_)
+
+    def without_shift(self, i: int) -> Limits | None:
+        """Bounds that hold whatever the shift of a robot; None: to narrow them would take too long."""
+        return self._without("available_until_s", i)
+
+    def without_deadline(self, j: int) -> Limits | None:
+        """The same whatever the deadline of a task."""
+        return self._without("deadline_s", j)
+
+    def without_windows(self, j: int) -> Limits | None:
+        """The same whatever the windows of a task."""
+        return self._without("window_s", j)
+
+    def _without(self, key: str, at: int) -> Limits | None:
+        """Bounds that hold whatever a key says of one robot or task: by it other pairs may have been excluded."""
+        if not self.steps:
+            return self  # no pair was excluded before
+        whose = "robots" if key == "available_until_s" else "tasks"
+        all_of_them: list[Any] = list(getattr(self.problem, whose))
+        if (key, at) not in self._freed and self.usable.size * len(all_of_them) <= _MOST_NARROWED:
+            all_of_them[at] = replace(all_of_them[at], **{key: () if key == "window_s" else None})
+            changes: dict[str, Any] = {whose: tuple(all_of_them), "known": self.problem.measured}
+            freed = _unnarrowed(replace(self.problem, **changes), self.usage, self.arrival, self.home)
+            self._freed[key, at] = _narrowed(freed)
+        return self._freed.get((key, at))
+
+    @cached_property
+    def _freed(self) -> dict[tuple[str, int], Limits]:
+        return {}
+
+    def must_also(self, j: int) -> list[int]:
+        """The other tasks that are in every plan with a task: all that come before it or begin with it."""
+        if j not in self._needed:
+            needed, waiting = {j}, [j]
+            while waiting:
+                k = waiting.pop()
+                new = {*self.problem.prerequisites[k], *self.rules.units[self.rules.unit[k]]} - needed
+                needed |= new
+                waiting += new
+            self._needed[j] = sorted(needed - {j})
+        return self._needed[j]
+
+    @cached_property
+    def held_back(self) -> dict[int, str]:
+        """The tasks that no plan does as one before them may end only so long before, each with what is too late."""
+        tasks = range(len(self.problem.tasks)) if self.is_timed else ()
+        found = {j: _too_far(self, j) or lag_cycle(self, [j, *self.must_also(j)]) or _held_back(self, j) for j in tasks}
+        return {j: late for j, late in found.items() if late}
+
+    @cached_property
+    def _needed(self) -> dict[int, list[int]]:
+        return {}
+
+
+def narrowed(
+    problem: Problem, usage: Floats, ways: Callable[[Problem, int], tuple[Floats, Floats]], *, timed: bool = False
+) -> Limits:
+    """Narrow the bounds until nothing changes: each pair that is not possible may make others begin later.
+
+    `timed` tells whether times are wanted even where none matter. `ways` gives for a robot the
+    seconds until it can be at each task, and from there to the end of its route.
+    """
+    if not (timed or problem.has_timed_rules):
+        none = np.empty((0, 0))
+        limits = _unnarrowed(problem, usage, none, none)
+        return replace(limits, usable=limits.possible(), steps=(limits,))
+    found = [ways(problem, i) for i in range(len(problem.robots))]
+    return _narrowed(_unnarrowed(problem, usage, np.array([a for a, _ in found]), np.array([h for _, h in found])))
+
+
+def untimed(problem: Problem) -> Limits:
+    """No bounds, for a problem in which nothing is timed; its pairs depend on their usage alone."""
+    none, at_once = np.empty((0, 0)), np.zeros(len(problem.tasks))
+    return Limits(problem, none, none.astype(np.bool_), none, none, at_once, at_once, (None,) * len(problem.tasks))
+
+
+def _unnarrowed(problem: Problem, usage: Floats, arrival: Floats, home: Floats) -> Limits:
+    at_once = np.zeros(len(problem.tasks))
+    return Limits(problem, usage, problem.allowed, arrival, home, at_once, at_once, (None,) * len(problem.tasks))
+
+
+def _narrowed(limits: Limits) -> Limits:
+    steps: list[Limits] = []
+    for _ in range(_MOST_ROUNDS):
+        next_limits = _with_begins(limits)
+        steps.append(replace(next_limits))  # without what is worked out from it
+        usable = next_limits.possible()
+        settled = bool((usable == limits.usable).all()) and bool((next_limits.begin == limits.begin).all())
+        limits = replace(next_limits, usable=usable)
+        if settled:
+            break
+    return replace(limits, steps=tuple(steps))
+
+
+@dataclass(frozen=True)
+class _Times:
+    """Bounds while they are raised: see `Limits`."""
+
+    ready: Floats
+    begin: Floats
+    awaited: list[int | None]
+
+    def wait(self, rules: TimedRules, j: int, time: float, why: int | None) -> bool:
+        """Let a task, and all that begins with it, wait until a time; returns whether that is later."""
+        if time <= self.ready[j] * (1 + ROUNDING) + ROUNDING:
+            return False
+        unit = rules.unit[j]
+        for k in rules.units[unit]:
+            self.ready[k], self.awaited[k] = max(self.ready[k], time), why
+        for k in rules.units[unit]:
+            self.begin[k] = _begin(rules, unit, self.ready)
+        return True
+
+
+def _with_begins(limits: Limits) -> Limits:
+    """Earliest begins with the pairs that are still possible."""
+    rules, tasks = limits.rules, range(len(limits.problem.tasks))
+    there = np.where(limits.usable, limits.arrival, math.inf)
+    ready = np.array(limits.ready)
+    for u in range(len(rules.units)):
+        latest = max(_of_team(rules, u, there).values())
+        for j in rules.units[u]:
+            ready[j] = max(ready[j], latest) if math.isfinite(latest) else ready[j]
+    times = _Times(ready, np.array([_begin(rules, rules.unit[j], ready) for j in tasks]), list(limits.awaited))
+    for _ in range(len(tasks) + 1):
+        if not _sweep(limits, times):
+            break
+    return replace(limits, ready=times.ready, begin=times.begin, awaited=tuple(times.awaited))
+
+
+def _sweep(limits: Limits, times: _Times) -> bool:
+    """Let tasks wait for their prerequisites; returns whether anything changed."""
+    changed = False
+    for j in range(len(times.begin)):
+        for k, after, _ in limits.rules.lags(j):
+            if math.isfinite(times.begin[k]):  # else it is left out, and so is all that waits for it
+                onward = times.begin[k] + limits.shortest_work[k] + max(after, _way(limits, k, j, limits.usable))
+                changed |= times.wait(limits.rules, j, onward, k)
+    return changed
+
+
+def _too_far(limits: Limits, j: int) -> str:
+    """That a task begins only so long after another, and the robot that must do both takes longer to come to it."""
+    for k, _, within in limits.rules.lags(j):
+        way = _way(limits, k, j, limits.problem.allowed) if math.isfinite(within) else 0.0
+        if way > within * (1 + ROUNDING) + ROUNDING:
+            most, least = spans(within, way)
+            before = limits.problem.tasks[k].id
+            return (
+                f"begins at most {most} after {before} ends, and the robot that does both takes {least} to come to it"
+            )
+    return ""
+
+
+def _held_back(limits: Limits, j: int) -> str:
+    """Which task before a task would be too late in every plan that does both, as it may not end too long before."""
+    tasks = [j, *limits.must_also(j)]
+    lags = [(k, b, within) for k in tasks for b, _, within in limits.rules.lags(k) if math.isfinite(within)]
+    if not lags:
+        return ""
+    times = _Times(limits.ready.copy(), limits.begin.copy(), list(limits.awaited))
+    for _ in range(len(tasks) + 1):
+        waiting = [
+            times.wait(limits.rules, b, times.begin[k] - within - limits.longest_work[b], None)
+            for k, b, within in lags
+            if math.isfinite(times.begin[k])
+        ]
+        if not any(waiting) and not _sweep(limits, times):
+            break
+    return next((late for k in tasks if k != j and (late := _late(limits, times, k))), "")
+
+
+def _late(limits: Limits, times: _Times, k: int) -> str:
+    """That a task is too late at some times; empty: it is not, or not by that alone."""
+    problem, begin = limits.problem, float(times.begin[k])
+    if math.isinf(limits.begin[k]) or begin == limits.begin[k]:
+        return ""
+    late = closed(problem, k, "begins at", float(times.ready[k]))
+    late = late or too_late(problem, k, begin + float(limits.shortest_work[k]))
+    return f"{problem.tasks[k].id} may end only so long before what follows: it {late}" if late else ""
+
+
+def _begin(rules: TimedRules, u: int, ready: Floats) -> float:
+    """When all tasks of a unit may begin at once."""
+    time, before = float(max(ready[j] for j in rules.units[u])), -math.inf
+    while before < time < math.inf:
+        before = time
+        for j in rules.units[u]:
+            time = float(rules.next_begin(j, np.array([time]))[0])
+    return time
+
+
+def _way(limits: Limits, k: int, j: int, usable: Bools) -> float:
+    """Least travel from a task to the next, if the same robot must do both; else 0."""
+    robots, others = (np.flatnonzero(usable[:, t]) for t in (k, j))
+    alone = len(robots) == 1 and len(others) == 1 and robots[0] == others[0]
+    if len(limits.problem.shortcuts()):
+        return 0.0  # a way through another task may be shorter
+    if not (alone or k in limits.rules.same_robot[j] or j in limits.rules.same_robot[k]):
+        return 0.0
+    both = np.flatnonzero(usable[:, k] & usable[:, j]).tolist()
+    return min((float(limits.problem.travel_seconds(i, [k], [j])[0, 0]) for i in both), default=0.0)
+
+
+def _of_team(rules: TimedRules, u: int, values: Floats) -> dict[int, float]:
+    """For each task of a unit the least of the largest values of the members, if a team has these; inf: no team."""
+    tasks, fits = rules.places(u)
+    found: dict[int, float] = {}
+    for j in rules.units[u]:
+        rows = np.array([k for k, task in enumerate(tasks) if task == j])
+        times = np.where(fits[rows], values[:, j], math.inf)
+        found[j] = _until_able(rules, j, values[:, j]) if rules.needs(j) else bottleneck(times)
+    return found
+
+
+def _until_able(rules: TimedRules, j: int, values: Floats) -> float:
+    """The least value up to which robots have the abilities that a task needs; inf: all have not."""
+    order = np.argsort(values, kind="stable")
+    order = order[np.isfinite(values[order])]
+    latest = 0.0
+    for needed, able in rules.needs(j):
+        enough = np.flatnonzero(np.cumsum(able[order]) >= needed * (1 - ROUNDING))
+        latest = max(latest, float(values[order[enough[0]]])) if len(enough) else math.inf
+        if math.isinf(latest):
+            break
+    return latest

@@ -1,0 +1,372 @@
+"""What one more task in the routes of a plan would do where times, teams and relations matter."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+
+from muster import core
+from muster.allocation.bounds.route_bounds import RouteBounds
+from muster.allocation.reasons.timed_teams import Member, TimedTeams, stop_of
+from muster.mission.ignorable_rules import IGNORABLE
+from muster.mission.model import Task
+from muster.model.problem import Problem
+from muster.model.rules import RULES
+from muster.model.rules.deadline import too_late
+from muster.model.rules.rule import InPlan
+from muster.model.rules.shift import beyond
+from muster.model.rules.window import closed
+
+_RELAXED = {rule.word: rule for rule in RULES if rule.lifted_late}
+"""The rules that are looked at one after the other, in the order of rules."""
+
+_MOST_PLACES = 400  # of a team, the earliest first, that are looked at
+_MOST_TEAMS = 60
+_MOST_OF_WHOLE = 2_000  # ways to place inseparable tasks
+
+
+@dataclass(frozen=True)
+class Place:
+    """A way to put a task, with all that begins together with it, into routes.
+
+    `at` is its index in the route of the robot that was asked about.
+    """
+
+    at: int
+    routes: list[list[int]]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The best admissible place, with the usage of the robot; or the rule that leaves none, and how.
+
+    Without a place and a rule not all places were looked at, and none of those that were is admissible.
+    """
+
+    place: Place | None = None
+    usage: float = math.inf
+    word: str = ""
+    detail: str = ""
+
+
+class TimedPlaces(TimedTeams):
+    """All places of a task in routes, by trial."""
+
+    def __init__(self, problem: Problem, routes: Sequence[Sequence[int]]) -> None:
+        super().__init__(problem, routes)
+        self._looked_at_some = set[tuple[int, int]]()  # pairs of which not all places are looked at
+        self.outcome = cache(self._outcome)
+        self.without = cache(self._without)
+        self.bounds_without = cache(lambda words: RouteBounds(self.without(words)))
+
+    def with_task(self, i: int, j: int, at: int) -> list[list[int]]:
+        place = self.outcome(i, j).place
+        assert place is not None  # as `at` is its place
+        return [list(route) for route in place.routes]
+
+    def kept_out(self, word: str, i: int, j: int) -> str | None:
+        found = self.outcome(i, j)
+        return found.detail if found.word == word else None
+
+    def _outcome(self, i: int, j: int) -> Outcome:
+        """The place of task j with the least usage of robot i, or why there is none."""
+        if missing := self._left_out_with(j):
+            return Outcome(word="relation", detail=missing)
+        if missing := self._transport_lacks(i, j):
+            return Outcome(word=self._word_of_whole(j), detail=missing)
+        places = self.places(i, j)
+        best = min(self._admissible(self.problem, places), key=lambda one: one[1].usages[i], default=None)
+        if best is not None:
+            return Outcome(best[0], best[1].usages[i])
+        if (i, j) in self._looked_at_some:
+            return Outcome()
+        if not places:
+            return Outcome(word="relation", detail="no team for it keeps its relations to the tasks of the plan")
+        return self._refused(i, j, places)
+
+    def _left_out_with(self, j: int) -> str:
+        """What the tasks that begin together with a task lack; empty: nothing."""
+        problem, whole = self.problem, self.problem.with_partner(j)
+        for k in problem.timed_rules.beginning_with(j):
+            if k in self.done:
+                continue
+            before = [problem.tasks[b].id for b in problem.prerequisites[k] if b not in self.done and b not in whole]
+            if before:
+                return f"begins together with {problem.tasks[k].id}; left out before that: {', '.join(before)}"
+        return ""
+
+    def _word_of_whole(self, j: int) -> str:
+        """The rule by which a task can only be done together with the tasks of a transport."""
+        if self.problem.partners[j] is not None:
+            return "load"
+        return "relation" if self.problem.timed_rules.beginning_with(j) else "prerequisite"
+
+    def _transport_lacks(self, i: int, j: int) -> str:
+        """What keeps robot i from the other task of a transport; empty: nothing."""
+        problem, other, whole = self.problem, self.problem.partners[j], self.problem.with_partner(j)
+        if other is not None and (not problem.may(i, other) or not self._keeps_relations(i, other)):
+            return f"comes with {problem.tasks[other].id}, which it cannot do"
+        for one in whole if len(whole) > 1 else ():
+            before = [problem.tasks[k].id for k in problem.prerequisites[one] if k not in self.done and k not in whole]
+            if before and one != j:
+                return f"comes with {problem.tasks[one].id}; left out before that: {', '.join(before)}"
+        return ""
+
+    @staticmethod
+    def _admissible(problem: Problem, places: Iterable[Place]) -> list[tuple[Place, core.Inspection]]:
+        tried = ((place, core.Inspection(problem.core, place.routes)) for place in places)
+        return [(place, found) for place, found in tried if found.admissible]
+
+    # --- the rule that leaves no place -------------------------------------------------------------------------------
+
+    def _refused(self, i: int, j: int, places: list[Place], unproven: Sequence[str] = ()) -> Outcome:
+        """The first rule with which, beside those before it, no place is left.
+
+        Rules that are not proven to be broken, as other calls at stations may keep them, are looked away from.
+        """
+        words = tuple(word for word in _RELAXED if word not in unproven)
+        left = self._admissible(self.without((*words, *unproven)), places)
+        if not left:
+            return self._no_order(i, j, places)
+        for at, word in enumerate(words):
+            others = (*words[at + 1 :], *unproven)
+            before, left = left, self._admissible(self.without(others), [place for place, _ in left])
+            if left:
+                continue
+            if _RELAXED[word].kept_by_calls and not self._is_proven(others, before):
+                return self._refused(i, j, places, (*unproven, word))
+            tie = self._tie_to_others(j)
+            if tie and not _RELAXED[word].concerns(self.problem, j):
+                detail = f"at every place in its route the tasks that come with it would break the rule {word}"
+                return Outcome(word=tie, detail=detail)
+            if tie and not self._is_by_itself(word, i, j, before):
+                detail = f"at every place in its route another robot that it needs would break the rule {word}"
+                return Outcome(word=tie, detail=detail)
+            return Outcome(word=word, detail=self._detail(word, i, j, before))
+        assert unproven  # or a place that keeps all rules would be admissible
+        return Outcome()
+
+    def _is_proven(self, others: Sequence[str], left: list[tuple[Place, core.Inspection]]) -> bool:
+        """Whether at each place a robot cannot do its route, wherever it calls at stations, `others` not holding."""
+        if not self.problem.stations:
+            return True
+        bounds = self.bounds_without(tuple(others))
+        return all(
+            any(bounds.excludes(k, route) for k, route in enumerate(place.routes) if route != self.routes[k])
+            for place, _ in left
+        )
+
+    def _tie_to_others(self, j: int) -> str:
+        """The rule by which other robots must do something beside one that does a task; empty: none."""
+        rules = self.problem.timed_rules
+        if rules.beginning_with(j):
+            return "relation"
+        if rules.is_for_team(j):
+            return "team"
+        return "relation" if len(self.problem.with_partner(j)) > 2 else ""
+
+    def _is_by_itself(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> bool:
+        """Whether a rule is broken at all places by the route of robot i, whatever the others do."""
+        rule = _RELAXED[word]
+        if not rule.of_a_route or (rule.of_the_team and len(self.problem.with_partner(j)) <= 2):
+            return True
+        alone = replace(
+            self.problem, ignored=tuple(one for one in IGNORABLE if one != word), fixed=(), known=self.problem.measured
+        )
+        own = ([place.routes[i] if k == i else [] for k in range(len(self.routes))] for place, _ in left)
+        return not any(core.Inspection(alone.core, routes).admissible for routes in own)
+
+    def _without(self, words: Sequence[str]) -> Problem:
+        """The problem in which some rules do not hold; windows still open, and the last ones do not close."""
+        problem = self.problem
+        if not words:
+            return problem
+        tasks = tuple(map(_never_closed, problem.tasks)) if "window" in words else problem.tasks
+        ignored = (*problem.ignored, *(word for word in words if word != "window"))
+        return replace(problem, ignored=ignored, tasks=tasks, known=problem.measured)
+
+    def _no_order(self, i: int, j: int, places: list[Place]) -> Outcome:
+        """Why no place is left whatever the times and capacities."""
+        free = self.without(tuple(_RELAXED))
+        usages = [core.Inspection(free.core, place.routes).usages for place in places]  # finite in a circle
+        if any(math.isinf(used[i]) for used in usages):
+            return Outcome(word="unreachable", detail=self.problem.no_way_to(i, j))
+        if any(map(math.isinf, itertools.chain.from_iterable(usages))):
+            return Outcome(word="unreachable", detail="there is no way for another robot of its team")
+        patient = replace(free, tasks=tuple(map(_without_within, free.tasks)), known=free.measured)
+        if self._admissible(patient, places):
+            detail = "at every place in its route a task would begin longer after its prerequisite than within_s allows"
+        else:
+            detail = "at every place in its route tasks would wait for each other in a circle"
+        return Outcome(word="prerequisite", detail=detail)
+
+    def _detail(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> str:
+        """How a rule is broken at the place where it is broken least."""
+        said = _RELAXED[word].broken_at(self.problem, i, [(place.routes, found) for place, found in left])
+        if said is not None:
+            return said
+        if word == "shift":
+            ends = (self._route_end(found, i, place.routes[i]) for place, found in left)
+            own = beyond(self.problem, i, min(ends))
+            return own or "with it the route of another robot would end after its shift"
+        times = [(stop_of(found, i, place.at), place, found) for place, found in left]
+        own = self._own_lateness(word, i, j, [stop for stop, _, _ in times])
+        return own or self._others_lateness(word, i, j, min(times, key=lambda one: one[0][1]))
+
+    def _own_lateness(self, word: str, i: int, j: int, stops: list[tuple[float, float, float]]) -> str | None:
+        """That the task itself is too late at every place."""
+        if word == "deadline":
+            return too_late(self.problem, j, min(end for _, _, end in stops))
+        earliest, begin = (min(times) for times in list(zip(*stops, strict=True))[:2])
+        return closed(self.problem, j, "arrives at", earliest) or closed(self.problem, j, "begins at", begin)
+
+    def _others_lateness(
+        self, word: str, i: int, j: int, best: tuple[tuple[float, float, float], Place, core.Inspection]
+    ) -> str:
+        """Which other task would be too late, at the place where the task begins first."""
+        _, place, found = best
+        for r, route in enumerate(place.routes):
+            for at, k in enumerate(route):
+                _, begin, end = stop_of(found, r, at)
+                late = (
+                    closed(self.problem, k, "begins at", begin) if word == "window" else too_late(self.problem, k, end)
+                )
+                if late and k != j:
+                    return f"with it {self.problem.tasks[k].id} {late}".replace(" at the earliest", "")
+        what = "windows" if word == "window" else "deadlines"
+        return f"at no place in its route are all {what} kept"
+
+    def _route_end(self, found: core.Inspection, i: int, route: list[int]) -> float:
+        """When robot i is at the end of its route."""
+        problem = self.problem
+        end = stop_of(found, i, len(route) - 1)[2]
+        if problem.robots[i].place_at_end(problem.mission.rules) is None:
+            return end
+        return end + float(problem.travel_seconds(i, [route[-1]], [problem.end(i)])[0, 0])
+
+    # --- places ------------------------------------------------------------------------------------------------------
+
+    def places(self, i: int, j: int) -> list[Place]:
+        """Ways to put task j into the route of robot i; of teams those that can begin first."""
+        whole = self.problem.with_partner(j)
+        if len(whole) > 1:
+            return self._of_whole(i, j, whole)
+        found: list[Place] = []
+        for number, team in enumerate(self._teams(i, j)):
+            if number == _MOST_TEAMS:
+                self._looked_at_some.add((i, j))
+                break
+            gaps = [self._gaps(robot) for robot, _ in team]
+            if len(team) == 1:
+                combinations: Iterable[tuple[int, ...]] = itertools.product(*gaps)
+            else:
+                combinations = self._earliest(team, gaps)
+                if len(combinations) < math.prod(map(len, gaps)):
+                    self._looked_at_some.add((i, j))
+            found += [self._put(i, team, at) for at in combinations]
+            if len(team) > 1 and len(found) >= _MOST_PLACES:
+                self._looked_at_some.add((i, j))
+                break
+        return found
+
+    def _of_whole(self, i: int, j: int, whole: Sequence[int]) -> list[Place]:
+        """The places of tasks that can only be done together."""
+        rules = self.problem.timed_rules
+        if len(whole) == 2 and not any(rules.is_for_team(k) or rules.beginning_with(k) for k in whole):
+            return list(self._of_transport(i, j, whole))
+        units = [[k for k in whole if rules.unit[k] == unit] for unit in dict.fromkeys(rules.unit[k] for k in whole)]
+        ways = self._grown(units, self.routes, {}, i, j)
+        found = [Place(routes[i].index(j), routes) for routes in itertools.islice(ways, _MOST_OF_WHOLE)]
+        if next(ways, None) is not None:
+            self._looked_at_some.add((i, j))
+        return found
+
+    def _grown(
+        self, units: Sequence[list[int]], routes: list[list[int]], teams: dict[int, tuple[int, ...]], i: int, j: int
+    ) -> Iterator[list[list[int]]]:
+        """Routes with units of inseparable tasks, one after the other, each with the teams that it can have."""
+        if not units:
+            if i in teams[j]:
+                yield routes
+            return
+        for chosen in itertools.product(*(list(self._teams_in_whole(k, teams)) for k in units[0])):
+            members = [(robot, k) for k, team in zip(units[0], chosen, strict=True) for robot in team]
+            if len({robot for robot, _ in members}) < len(members):
+                continue
+            gaps = [range(len(self.problem.beginning(robot)), len(routes[robot]) + 1) for robot, _ in members]
+            for at in itertools.product(*gaps):
+                longer = self._with_members(routes, members, at)
+                yield from self._grown(units[1:], longer, {**teams, **dict(zip(units[0], chosen, strict=True))}, i, j)
+
+    def _teams_in_whole(self, k: int, teams: dict[int, tuple[int, ...]]) -> Iterator[tuple[int, ...]]:
+        """The teams of a task: that of the one whose load it delivers, or all that it can have."""
+        pickup = self.problem.partners[k]
+        if pickup in teams and self.problem.tasks[k].delivers is not None:
+            yield teams[pickup]
+        else:
+            yield from self._teams_of(k, None)
+
+    def _of_transport(self, i: int, j: int, whole: Sequence[int]) -> Iterator[Place]:
+        """All places of both tasks of a transport."""
+        first, second = whole
+        if not self._keeps_relations(i, j):
+            return
+        route = self.routes[i]
+        for at, then in itertools.combinations_with_replacement(self._gaps(i), 2):
+            with_both = [*route[:at], first, *route[at:then], second, *route[then:]]
+            routes = [with_both if k == i else other for k, other in enumerate(self.routes)]
+            yield Place(with_both.index(j), routes)
+
+    def _put(self, i: int, team: Sequence[Member], at: Sequence[int]) -> Place:
+        routes = self._with_members(self.routes, team, at)
+        return Place(next(gap for (robot, _), gap in zip(team, at, strict=True) if robot == i), routes)
+
+    @staticmethod
+    def _with_members(routes: list[list[int]], team: Sequence[Member], at: Sequence[int]) -> list[list[int]]:
+        longer = list(routes)
+        for (robot, task), gap in zip(team, at, strict=True):
+            longer[robot] = [*longer[robot][:gap], task, *longer[robot][gap:]]
+        return longer
+
+    def _gaps(self, i: int) -> range:
+        return range(len(self.problem.beginning(i)), len(self.routes[i]) + 1)
+
+    def _earliest(self, team: Sequence[Member], gaps: Sequence[range]) -> list[tuple[int, ...]]:
+        """Combinations of gaps, those first at which the last member arrives first; of these the latest gaps."""
+        most = max(1, int(_MOST_PLACES ** (1 / len(team))))
+        all_of_them = math.prod(map(len, gaps)) <= _MOST_PLACES
+        near = [list(some) if all_of_them else _spread(list(some), most) for some in gaps]
+        arrivals = [{gap: self._arrival(*member, gap) for gap in some} for member, some in zip(team, near, strict=True)]
+
+        def order(at: tuple[int, ...]) -> tuple[float, int]:
+            return max(times[gap] for times, gap in zip(arrivals, at, strict=True)), -sum(at)
+
+        return sorted(itertools.product(*near), key=order)
+
+
+def _never_closed(task: Task) -> Task:
+    """A task whose last window has no end."""
+    if not task.window_s:
+        return task
+    *before, (opens, _) = sorted(task.window_s, key=lambda window: window[0])
+    return replace(task, window_s=(*before, (opens, None)))
+
+
+def _without_within(task: Task) -> Task:
+    """A task that may begin however long after its prerequisites."""
+    return replace(task, lags={name: replace(lag, within_s=None) for name, lag in task.lags.items()})
+
+
+def in_plan(problem: Problem, routes: Sequence[Sequence[int]]) -> InPlan:
+    """Routes, and what one more task in them would do."""
+    return TimedPlaces(problem, routes) if problem.core.is_timed else InPlan(problem, routes)
+
+
+def _spread(gaps: list[int], most: int) -> list[int]:
+    """Some of many gaps, the last ones and others evenly."""
+    if len(gaps) <= most:
+        return gaps
+    return sorted({gaps[-1 - k * (len(gaps) - 1) // max(1, most - 1)] for k in range(most)})

@@ -1,0 +1,50 @@
+"""The problem of a mission with the changes of a remedy."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from muster.allocation.remedies.remedy import Remedy
+from muster.mission.model import Robot, Task
+from muster.model.problem import Problem
+from muster.model.rules import Change
+
+
+def pair_changes(problem: Problem, robot: Robot, task: Task) -> dict[str, Change]:
+    """By the words of rules the changes with which the robot may do the task."""
+    found = {rule.word: rule.change(problem, robot, task) for rule in problem.rules if rule.key is not None}
+    return {word: change for word, change in found.items() if change is not None}
+
+
+def changed(problem: Problem, remedy: Remedy, i: int, j: int) -> Problem:
+    """The problem with the changes of the remedy, and its capacity."""
+    robot, task, suitability = problem.robots[i], problem.tasks[j], problem.mission.suitability
+    enough = remedy.capacity.enough
+    capacity = robot.work_capacity if remedy.capacity.now is None or enough is None else enough
+    abler, freer = replace(robot, work_capacity=capacity), task
+    for change in remedy.changes.values():
+        abler, freer = change.robot(abler), change.task(freer, robot)
+        suitability = None if suitability is None else change.suitability(suitability)
+    more = tuple(one for change in remedy.changes.values() for one in change.more_robots())
+    others = {one.id: _beside(remedy, one, task) for one in problem.mission.tasks}
+    mission = replace(
+        problem.mission,
+        robots=(*(abler if one.id == robot.id else one for one in problem.mission.robots), *more),
+        tasks=tuple(freer if one.id == task.id else others[one.id] for one in problem.mission.tasks),
+        suitability=suitability,
+    )
+    return Problem.compile(mission, problem.objective, problem.ignored)
+
+
+def _beside(remedy: Remedy, other: Task, task: Task) -> Task:
+    """Another task with the changes of the remedy for a task."""
+    for change in remedy.changes.values():
+        other = change.other(other, task)
+    return other
+
+
+def with_capacity(problem: Problem, i: int, capacity: float | None) -> Problem:
+    """The problem with another work capacity of robot i."""
+    robots = list(problem.robots)
+    robots[i] = replace(robots[i], work_capacity=capacity)
+    return replace(problem, robots=tuple(robots))

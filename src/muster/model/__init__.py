@@ -1,0 +1,1 @@
+"""The compiled mission: what a plan must hold, as a few primitives that every interpreter reads; one rule a file."""

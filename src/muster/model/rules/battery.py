@@ -1,0 +1,118 @@
+"""A battery never holds less than its reserve; stations charge and swap it on the way."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from muster import core
+from muster.mission.model import Robot
+from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot
+
+
+@dataclass(frozen=True)
+class LargerBattery(Change):
+    """What the robot's battery would have to hold; inf: without an end."""
+
+    capacity: float
+    unit: str
+
+    @property
+    def plain(self) -> float:
+        return self.capacity
+
+    @property
+    def short(self) -> str:
+        return f"a battery of {self.capacity:.2f} {self.unit}"
+
+    def robot(self, robot: Robot) -> Robot:
+        if robot.battery is None or math.isinf(self.capacity):
+            return replace(robot, battery=None)
+        return replace(robot, battery=replace(robot.battery, capacity=self.capacity))
+
+    def for_usage(self, robot: Robot, usage: float) -> LargerBattery | None:
+        """What is enough for a route that uses so much, without calls; None: the battery as it is."""
+        battery = robot.battery
+        if battery is None:
+            return None
+        needed = usage / (battery.at_start - battery.reserve)
+        return replace(self, capacity=needed) if needed > battery.capacity else None
+
+
+class Battery(Rule):
+    """`battery` falls with usage, is filled at stations, and is never below `reserve * capacity`."""
+
+    word: ClassVar[str] = "battery"
+    asked = ("battery",)
+    lifted_late = True
+    of_a_route = True
+    of_the_team = True
+    kept_by_calls = True
+    key = "battery"
+
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        if not problem.holds(self.word):
+            return {"battery": None}
+        return {"battery": first_robot(problem, "battery", lambda i: problem.robots[i].battery)}
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        stations = [
+            (s.charge_per_s or 0.0, s.swap_s if s.swaps else -1.0, s.unloads, s.partial, s.slots)
+            for s in problem.mission.stations
+        ]
+        robots = problem.robots
+        if not problem.holds(self.word) or all(robot.battery is None for robot in robots):
+            return {"battery": np.empty(0), "battery_at_start": np.empty(0), "stations": stations}
+        return {
+            "battery": np.array([energy_room(robot) for robot in robots]),
+            "battery_at_start": np.array([energy_at_start(problem, i) for i in range(len(robots))]),
+            "stations": stations,
+        }
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        return problem.robots[i].battery if problem.holds(self.word) else None
+
+    def possible(self, limits: Limits) -> Bools | None:
+        if not any(robot.battery for robot in limits.problem.robots):
+            return None
+        return limits.problem.energy_reaches
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        battery = problem.robots[i].battery
+        if battery is None or problem.energy_reaches[i, j] or math.isinf(outlook.least):
+            return None
+        least, unit = outlook.least, problem.usage_unit
+        holds = f"its battery holds {energy_at_start(problem, i):.2f} {unit} above its reserve"
+        if not problem.mission.stations:
+            return f"takes at least {least:.2f} {unit}, {holds}"
+        return f"takes at least {least:.2f} {unit}, {holds}, and no station is near enough"
+
+    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
+        usage, unit = min(found.usages[i] for _, found in places), problem.usage_unit
+        holds = f"its battery holds {energy_at_start(problem, i):.2f} {unit} above its reserve"
+        stations = ", and no calls at stations make up for that" if problem.mission.stations else ""
+        return f"at least {usage:.2f} {unit} with it, {holds}{stations}"
+
+    def lifted(self, problem: Question, i: int) -> LargerBattery | None:
+        battery = problem.robots[i].battery
+        if battery is None or battery.at_start <= battery.reserve:
+            return None
+        return LargerBattery(math.inf, problem.usage_unit)
+
+
+def energy_room(robot: Robot) -> float:
+    """Return what a robot's battery holds above its reserve when it is full; inf without a battery."""
+    return math.inf if robot.battery is None else robot.battery.capacity - robot.battery.least
+
+
+def energy_at_start(problem: Question, i: int) -> float:
+    """Return what it holds above its reserve at first."""
+    battery = problem.robots[i].battery
+    if battery is None:
+        return math.inf
+    level = problem.levels[i] if problem.levels else battery.level_at_start
+    return max(0.0, level - battery.least)

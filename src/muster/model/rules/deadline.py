@@ -1,0 +1,91 @@
+"""Work on a task ends by its deadline."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from muster.mission.model import Robot, Task
+from muster.model.rules.rule import (
+    ROUNDING,
+    Bools,
+    Change,
+    Limits,
+    Outlook,
+    Question,
+    Rule,
+    first_task,
+    limits_array,
+)
+from muster.model.rules.times import known_least, longer, moments, span
+
+
+@dataclass(frozen=True)
+class LaterDeadline(Change):
+    """A later deadline of a task: `until_s`, None without one; before `at_least_s` no admissible plan is enough."""
+
+    deadline_s: float
+    until_s: float | None
+    at_least_s: float | None = None
+
+    @property
+    def plain(self) -> dict[str, float | None]:
+        return asdict(self)
+
+    @property
+    def seconds(self) -> float:
+        return math.inf if self.until_s is None else self.until_s - self.deadline_s
+
+    @property
+    def short(self) -> str:
+        return f"a deadline {longer(self.seconds)} later"
+
+    @property
+    def line(self) -> str:
+        return f"{self.short}, at {span(self.until_s or 0.0)}: {known_least(self.until_s, self.at_least_s)}"
+
+    def task(self, task: Task, robot: Robot) -> Task:
+        return replace(task, deadline_s=self.until_s)
+
+
+class Deadline(Rule):
+    """The end of the work is at most `deadline_s`."""
+
+    word: ClassVar[str] = "deadline"
+    asked = ("deadline",)
+    lifted_late = True
+    key = "deadline"
+
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        deadline = problem.timed_rules.deadline
+        return {"deadline": first_task(problem, "deadline_s", lambda j: np.isfinite(deadline[j]))}
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        return {"deadline": limits_array(problem.timed_rules.deadline)}
+
+    def possible(self, limits: Limits) -> Bools | None:
+        if not limits.is_timed:
+            return None
+        return np.asarray(limits.pair_end <= limits.rules.deadline * (1 + ROUNDING))
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        limits = outlook.limits
+        if not limits.is_timed or too_late(problem, j, float(limits.pair_end[i, j])) is None:
+            return None
+        free = limits.without_deadline(j)
+        (until,) = moments(problem, float(problem.timed_rules.deadline[j]))
+        late = None if free is None else too_late(problem, j, float(free.pair_end[i, j]))
+        return late or f"what it waits for is too late for its deadline, which is {until}"
+
+
+def too_late(problem: Question, j: int, end: float) -> str | None:
+    """That work on a task which ends at a time is too late; None: it is not."""
+    deadline = float(problem.timed_rules.deadline[j])
+    if math.isinf(end) or end <= deadline * (1 + ROUNDING):
+        return None
+    ends, until = moments(problem, end, deadline)
+    return f"ends at {ends} at the earliest, its deadline is {until}"

@@ -1,0 +1,173 @@
+"""What a robot has on board fits in; what one task takes on board and another delivers is one transport."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from muster import core
+from muster.mission.goods import by_commodity, shown_amounts
+from muster.mission.model import Robot, Task
+from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot, first_task
+
+Amounts = Mapping[str, float]
+_ARRAYS = ("load", "pending", "load_capacity", "load_at_start", "pending_at_start")
+
+
+@dataclass(frozen=True)
+class MoreRoom(Change):
+    """What the robot would have to carry, by commodity."""
+
+    load_capacity: Amounts
+
+    @property
+    def plain(self) -> Amounts:
+        return self.load_capacity
+
+    @property
+    def short(self) -> str:
+        return f"a load capacity of {shown_amounts(self.load_capacity)}"
+
+    def robot(self, robot: Robot) -> Robot:
+        most = robot.load_capacity
+        if not isinstance(most, Mapping):
+            return replace(robot, load_capacity=max(self.load_capacity.values()))
+        return replace(robot, load_capacity={**most, **self.load_capacity})
+
+
+class Load(Rule):
+    """After every stop the load of each commodity is between 0 and the robot's `load_capacity`."""
+
+    word: ClassVar[str] = "load"
+    asked = ("load",)
+    key = "load_capacity"
+    lifted_late = True
+    of_a_route = True
+    kept_by_calls = True
+
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        if not self._holds(problem):
+            return {"load": None}
+        loads = first_task(problem, "load", lambda j: by_commodity(problem.tasks[j].load))
+        return {"load": loads or first_robot(problem, "load_at_start", lambda i: _at_start(problem.robots[i]))}
+
+    def _holds(self, problem: Question) -> bool:
+        return problem.holds(self.word)
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        names, none = commodities(problem), np.empty(0)
+        if not names:
+            arrays: dict[str, Any] = dict.fromkeys(_ARRAYS, none)
+            return arrays | {"commodities": 0, "pickup": np.empty(0, dtype=np.int32)}
+        pickup = pickups(problem)
+        delivered = {k for k in pickup if k >= 0}
+        own = np.array([[by_commodity(task.load).get(name, 0.0) for name in names] for task in problem.tasks])
+        own = own.reshape(len(problem.tasks), len(names))
+        put_down = np.array([own[k] if k >= 0 else np.zeros(len(names)) for k in pickup]).reshape(own.shape)
+        taken_on = np.array([own[j] if j in delivered else np.zeros(len(names)) for j in range(len(own))])
+        taken_on = taken_on.reshape(own.shape)
+        aboard = np.zeros((len(problem.robots), len(names)))
+        for i, deliveries in enumerate(problem.aboard):
+            for j in deliveries:
+                aboard[i] -= own[j]
+                taken_on[j] = own[j]
+        return {
+            "commodities": len(names),
+            "load": own - put_down,
+            "pending": taken_on - put_down,
+            "pickup": np.array(pickup if delivered else [], dtype=np.int32),
+            "load_capacity": np.array([[room_for(robot, name) for name in names] for robot in problem.robots]),
+            "pending_at_start": aboard,
+            "load_at_start": np.array([[_at_start(one).get(name, 0.0) for name in names] for one in problem.robots]),
+        }
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        robot = problem.robots[i]
+        return tuple((name, room_for(robot, name), _at_start(robot).get(name, 0.0)) for name in commodities(problem))
+
+    def kinds(self, problem: Question) -> list[Hashable] | None:
+        if not commodities(problem):
+            return None
+        return [self.of_robot(problem, i) for i in range(len(problem.robots))]
+
+    def refusal(self, problem: Question, i: int, j: int) -> str | None:
+        lacking = _too_much(problem, problem.robots[i], problem.tasks[j])
+        return None if lacking is None else f"{lacking[0]}, and it carries {lacking[1]}"
+
+    def possible(self, limits: Limits) -> Bools | None:
+        """Both tasks of a transport, or neither."""
+        pickup = pickups(limits.problem)
+        if not any(k >= 0 for k in pickup):
+            return None
+        possible = np.ones_like(limits.usable)
+        for j, k in enumerate(pickup):
+            if k >= 0:
+                both = limits.usable[:, j] & limits.usable[:, k]
+                possible[:, j] = possible[:, k] = both
+        return possible
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        refused = self.refusal(problem, i, j)
+        if refused is not None:
+            return refused
+        other = problem.partners[j]
+        if other is None or outlook.limits.usable[i, other]:
+            return None
+        return f"it cannot do {problem.tasks[other].id}, which {_is_to(problem, j)}"
+
+    def concerns(self, problem: Question, j: int) -> bool:
+        other = problem.partners[j]
+        return any(problem.tasks[k].load is not None for k in (j, other) if k is not None)
+
+    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
+        return "at every place in its route it would carry more than it can, or put down more than it has"
+
+    def change(self, problem: Question, robot: Robot, task: Task) -> MoreRoom | None:
+        if not self._holds(problem):
+            return None
+        needed = {name: load for name, load in by_commodity(task.load).items() if load > room_for(robot, name)}
+        return MoreRoom(needed) if needed else None
+
+
+def commodities(problem: Question) -> list[str]:
+    """Everything that is carried; nothing where loads are ignored."""
+    if not problem.holds("load"):
+        return []
+    named = {name for task in problem.tasks for name in by_commodity(task.load)}
+    if not named:
+        return []
+    return sorted(named | {name for robot in problem.robots for name in _at_start(robot)})
+
+
+def pickups(problem: Question) -> list[int]:
+    """For each task the one whose load it delivers; -1: none, or one that is not in the problem."""
+    index = {task.id: j for j, task in enumerate(problem.tasks)} if problem.holds("load") else {}
+    return [index.get(task.delivers, -1) if task.delivers is not None else -1 for task in problem.tasks]
+
+
+def room_for(robot: Robot, commodity: str) -> float:
+    """How much of a commodity a robot carries; inf without a capacity, 0 of what its capacities do not name."""
+    if robot.load_capacity is None:
+        return np.inf
+    return by_commodity(robot.load_capacity).get(commodity, 0.0)
+
+
+def _at_start(robot: Robot) -> Amounts:
+    return by_commodity(robot.load_at_start)
+
+
+def _is_to(problem: Question, j: int) -> str:
+    return "takes on what it delivers" if problem.tasks[j].delivers is not None else "delivers what it takes on"
+
+
+def _too_much(problem: Question, robot: Robot, task: Task) -> tuple[str, str] | None:
+    """What a task takes on that is more than a robot carries, and how much that is."""
+    if not problem.holds("load"):
+        return None
+    for name, load in by_commodity(task.load).items():
+        if load > (room := room_for(robot, name)):
+            return f"takes {shown_amounts({name: load})} on board", f"{room:.10g}"
+    return None

@@ -1,0 +1,108 @@
+"""A robot does at least so many tasks, or none at all: one that would do too few is not worth sending out."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from muster import core
+from muster.mission.model import Mission, Robot
+from muster.mission.texts.counting import counted
+from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot, listed
+
+
+@dataclass(frozen=True)
+class FewerTasks(Change):
+    """A smaller least number of tasks of a robot: `enough` instead of `now`."""
+
+    now: int
+    enough: int
+
+    @property
+    def plain(self) -> dict[str, int]:
+        return asdict(self)
+
+    @property
+    def short(self) -> str:
+        return f"min_tasks {self.enough} instead of {self.now}"
+
+    @property
+    def line(self) -> str:
+        return f"{self.short}: enough (a plan was found)"
+
+    def robot(self, robot: Robot) -> Robot:
+        return replace(robot, min_tasks=self.enough)
+
+    def narrowed(self, tasks: int) -> Change | None:
+        return replace(self, enough=tasks) if tasks < self.now else None
+
+
+class MinTasks(Rule):
+    """A route has no task, or at least `min_tasks_i`; a team's task counts for each of its members."""
+
+    word: ClassVar[str] = "min-tasks"
+    asked = ("min-tasks",)
+    for_good = False
+    lifted_late = True
+    of_a_route = True
+    of_the_team = True
+    key = "min_tasks"
+
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        return {"min-tasks": first_robot(problem, "min_tasks", lambda i: _least(problem, i) > 1)}
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        least = least_tasks(problem)
+        return {"min_tasks": least if (least > 1).any() else np.empty(0, dtype=np.int32)}
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        return _least(problem, i)
+
+    def possible(self, limits: Limits) -> Bools | None:
+        least = least_tasks(limits.problem)
+        if not (least > 1).any():
+            return None
+        enough = limits.usable.sum(axis=1) >= least
+        return np.broadcast_to(enough[:, None], limits.usable.shape)
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        least = _least(problem, i)
+        if least <= 1 or outlook.limits.usable[i].sum() >= least:
+            return None
+        may = sum(problem.may(i, k) for k in range(len(problem.tasks)))
+        only = f"and may do only {counted(may, 'task')}" if may < least else "and can never do so many"
+        return f"does at least {least} tasks or none, {only}"
+
+    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str:
+        least = least_tasks(problem)
+        short = [{k: len(r) for k, r in enumerate(routes) if 0 < len(r) < least[k]} for routes, _ in places]
+        said = (
+            f"{problem.robots[k].id} would do {counted(n, 'task')}, and does at least {least[k]} or none"
+            for k, n in min(short, key=len).items()
+        )
+        return f"with it {listed(list(said))}"
+
+    def never_used(self, mission: Mission, robot: Robot) -> str | None:
+        if robot.min_tasks <= len(mission.tasks):
+            return None
+        return f"min_tasks {robot.min_tasks}, and the mission has {counted(len(mission.tasks), 'task')}"
+
+    def too_few(self, problem: Question, i: int, tasks: int) -> bool:
+        return 0 < tasks < _least(problem, i)
+
+    def lifted(self, problem: Question, i: int) -> Change | None:
+        least = problem.robots[i].min_tasks
+        return FewerTasks(least, 0) if least > 1 else None
+
+
+def least_tasks(problem: Question) -> npt.NDArray[np.int32]:
+    """(m,) how many tasks robots do at least that do any; as many as bind, one more than there are tasks at most."""
+    return np.array([_least(problem, i) for i in range(len(problem.robots))], dtype=np.int32)
+
+
+def _least(problem: Question, i: int) -> int:
+    return min(problem.robots[i].min_tasks, len(problem.tasks) + 1) if problem.holds(MinTasks.word) else 0

@@ -1,0 +1,65 @@
+"""A task is in the plan only together with its prerequisites, and nothing waits in a circle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+
+from muster.model.rules.rule import (
+    Bools,
+    InPlan,
+    Limits,
+    Outlook,
+    Question,
+    Rule,
+    first_task,
+    limits_array,
+    listed,
+)
+
+
+def _awaited_lags(problem: Question, j: int) -> list[tuple[float, float]]:
+    """For each task that must be done before task j, also the one whose goods it delivers, the least and most lag."""
+    known = {k: (after, within) for k, after, within in problem.timed_rules.lags(j)}
+    return [known.get(k, (0.0, np.inf)) for k in problem.awaited[j]]
+
+
+class Prerequisite(Rule):
+    """All prerequisites of a task are in the plan, and can be done before it."""
+
+    word: ClassVar[str] = "prerequisite"
+    asked = ("lag",)
+
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        lags = problem.timed_rules.lags
+        lagged = [any(after or np.isfinite(within) for _, after, within in lags(j)) for j in range(len(problem.tasks))]
+        return {"lag": first_task(problem, "prerequisites with after_s or within_s", lambda j: lagged[j])}
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        lags = [lag for j in range(len(problem.tasks)) for lag in _awaited_lags(problem, j)]
+        after, within = np.array(lags).reshape(-1, 2).T
+        return {"after": after if after.any() else np.empty(0), "within": limits_array(within)}
+
+    def possible(self, limits: Limits) -> Bools | None:
+        if not limits.held_back:
+            return None
+        possible = np.ones_like(limits.usable)
+        possible[:, list(limits.held_back)] = False
+        return possible
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        if outlook.lost_before not in problem.tasks[j].prerequisites:
+            return outlook.limits.held_back.get(j)
+        return f"{outlook.lost_before} comes before it and can never be done"
+
+    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        missing = [plan.problem.tasks[k].id for k in plan.problem.prerequisites[j] if k not in plan.done]
+        if missing:
+            return f"left out before it: {listed(missing)}"
+        if plan.is_timed:
+            return plan.kept_out(self.word, i, j)
+        if plan.insertion(i, j) is None:
+            return "at every place in its route the prerequisites would wait in a circle"
+        return None

@@ -1,0 +1,132 @@
+"""Relations between tasks: by the same robots, by others, or beginning together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from muster.mission.model import Robot, Task
+from muster.model.bottleneck import on_some_matching
+from muster.model.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_task, listed
+
+
+@dataclass(frozen=True)
+class Untied(Change):
+    """The relations to other tasks of which a task would have to be free."""
+
+    relations: tuple[tuple[str, str], ...]
+
+    @property
+    def plain(self) -> list[dict[str, str]]:
+        return [{"relation": relation, "task": task} for relation, task in self.relations]
+
+    @property
+    def short(self) -> str:
+        return f"without {listed([f'{relation} {task}' for relation, task in self.relations])}"
+
+    def task(self, task: Task, robot: Robot) -> Task:
+        return self._without(task, self.relations)
+
+    def other(self, other: Task, task: Task) -> Task:
+        return self._without(other, [(relation, task.id) for relation, name in self.relations if name == other.id])
+
+    @staticmethod
+    def _without(task: Task, relations: Sequence[tuple[str, str]]) -> Task:
+        for relation, name in relations:
+            left: Any = tuple(one for one in getattr(task, relation) if one != name)
+            task = replace(task, **{relation: left})
+        return task
+
+
+class Relation(Rule):
+    """`same_robot_as` and `other_robot_than` bind when both tasks are done; of `starts_with` both are, or neither."""
+
+    word: ClassVar[str] = "relation"
+    about_one = False
+    asked = ("relation", "starts-with")
+    key = "relation"
+
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        rules = problem.timed_rules
+        same = _stated(problem, "same_robot_as", lambda j: rules.same_robot[j])
+        whole = len(rules.units) == len(problem.tasks)
+        return {
+            "relation": same or _stated(problem, "other_robot_than", lambda j: rules.other_robot[j]),
+            "starts-with": None if whole else first_task(problem, "starts_with", rules.beginning_with),
+        }
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        rules, alone = problem.timed_rules, len(problem.timed_rules.units) == len(problem.tasks)
+        return {
+            "unit": np.array([] if alone else rules.unit, dtype=np.int32),
+            "same_robot": rules.same_robot if any(rules.same_robot) else [],
+            "other_robot": rules.other_robot if any(rules.other_robot) else [],
+        }
+
+    def possible(self, limits: Limits) -> Bools | None:
+        if not limits.rules.with_relations:
+            return None
+        possible = np.ones_like(limits.usable)
+        for j in range(possible.shape[1]):
+            for k in limits.must_also(j):
+                possible[:, j] &= self._beside(limits, j, k)
+        for unit in filter(lambda unit: len(unit) > 1, limits.rules.units):
+            for j, row in _different(limits, unit).items():
+                possible[:, j] &= row
+        return possible
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        limits = outlook.limits
+        if not limits.rules.with_relations:
+            return None
+        if outlook.lost_before and outlook.lost_before not in problem.tasks[j].prerequisites:
+            return f"begins together with {outlook.lost_before}, which can never be done"
+        for k in limits.must_also(j):
+            if not self._beside(limits, j, k)[i]:
+                name = problem.tasks[k].id
+                if k in limits.rules.same_robot[j]:
+                    return f"the same robot must do {name}, which comes with it, and cannot be {problem.robots[i].id}"
+                return f"another robot must do {name}, which comes with it, and only {problem.robots[i].id} can"
+        unit = limits.rules.units[limits.rules.unit[j]]
+        if len(unit) == 1 or _different(limits, unit)[j][i]:
+            return None
+        names = listed([problem.tasks[k].id for k in unit if k != j])
+        return f"begins together with {names}, for which no different robots are left"
+
+    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        problem, rules = plan.problem, plan.problem.timed_rules
+        for k in rules.same_robot[j]:
+            if plan.members(k) and i not in plan.members(k):
+                by = listed([problem.robots[m].id for m in plan.members(k)])
+                return f"the same robot must do {problem.tasks[k].id}, and {by} does it"
+        for k in rules.other_robot[j]:
+            if i in plan.members(k):
+                return f"another robot must do {problem.tasks[k].id}, which is in its route"
+        return plan.kept_out(self.word, i, j)
+
+    @staticmethod
+    def _beside(limits: Limits, j: int, k: int) -> Bools:
+        """(m,) which robots can do task j as far as its relations to task k, which is done too, tell."""
+        others = limits.usable[:, k]
+        if k in limits.rules.same_robot[j]:
+            return others
+        if k in limits.rules.other_robot[j] and int(others.sum()) == 1:
+            return ~others
+        return np.ones_like(others)
+
+
+def _stated(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
+    """The first task in a relation; where one is there, the first that states it, as the rules are symmetric."""
+    stated = first_task(problem, key, lambda j: has(j) and getattr(problem.tasks[j], key))
+    return stated or first_task(problem, key, has)
+
+
+def _different(limits: Limits, unit: list[int]) -> dict[int, Bools]:
+    """For each task of a unit the robots that can do it while different ones do the others."""
+    rules = limits.rules
+    tasks, fits = rules.places(rules.unit[unit[0]])
+    able = on_some_matching(fits & limits.alone.T[tasks])
+    return {j: np.asarray(able[[k for k, task in enumerate(tasks) if task == j]].any(axis=0)) for j in unit}

@@ -1,0 +1,329 @@
+"""The interface of a rule, and the change that lifts a rule for a robot and a task."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from muster import core
+from muster.mission.model import Mission, Robot, Task
+from muster.model.plan_model import TimedRules
+
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
+Routes = list[list[int]]
+Scores = Mapping[str, Mapping[str, float]]
+
+ROUNDING = 2e-9
+"""By how much a usage may be above a capacity, relative; a little more than the judge allows."""
+
+
+class Question(Protocol):
+    """What rules look at: a `Problem`."""
+
+    @property
+    def mission(self) -> Mission: ...
+    @property
+    def robots(self) -> tuple[Robot, ...]: ...
+    @property
+    def tasks(self) -> tuple[Task, ...]: ...
+    @property
+    def capacity(self) -> Floats: ...
+    @property
+    def prerequisites(self) -> list[list[int]]: ...
+    @property
+    def awaited(self) -> list[list[int]]: ...
+    @property
+    def kinds(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def usage_unit(self) -> str: ...
+    @property
+    def partners(self) -> list[int | None]: ...
+    @property
+    def aboard(self) -> tuple[tuple[int, ...], ...]: ...
+    @property
+    def levels(self) -> tuple[float, ...]: ...
+    @property
+    def energy_reaches(self) -> Bools: ...
+    @property
+    def core(self) -> core.Problem: ...
+    @property
+    def timed_rules(self) -> TimedRules: ...
+
+    def holds(self, rule: str) -> bool: ...
+
+    def may(self, i: int, j: int) -> bool: ...
+
+    def action_refusal(self, i: int, j: int) -> str | None: ...
+
+    def actions_refused(self, i: int) -> frozenset[int]: ...
+
+    def no_way_to(self, i: int, j: int) -> str: ...
+
+
+class Limits(Protocol):
+    """Lower bounds of usage and times, over all admissible plans; see `muster.allocation.bounds.limits`."""
+
+    @property
+    def problem(self) -> Question: ...
+    @property
+    def rules(self) -> TimedRules: ...
+    @property
+    def is_timed(self) -> bool: ...
+    @property
+    def usage(self) -> Floats: ...
+    @property
+    def usable(self) -> Bools: ...
+    @property
+    def alone(self) -> Bools: ...
+    @property
+    def arrival(self) -> Floats: ...
+    @property
+    def home(self) -> Floats: ...
+    @property
+    def ready(self) -> Floats: ...
+    @property
+    def awaited(self) -> tuple[int | None, ...]: ...
+    @property
+    def pair_begin(self) -> Floats: ...
+    @property
+    def pair_end(self) -> Floats: ...
+
+    @property
+    def held_back(self) -> dict[int, str]: ...
+
+    def must_also(self, j: int) -> list[int]: ...
+
+    def without_shift(self, i: int) -> Limits | None: ...
+
+    def without_deadline(self, j: int) -> Limits | None: ...
+
+    def without_windows(self, j: int) -> Limits | None: ...
+
+
+class Change:
+    """What has to change for a robot to do a task under one rule: the least. Subclasses are frozen dataclasses."""
+
+    @property
+    def plain(self) -> Any:
+        """The change as plain data."""
+        raise NotImplementedError
+
+    @property
+    def short(self) -> str:
+        """The change in a few words."""
+        raise NotImplementedError
+
+    @property
+    def line(self) -> str:
+        """The change as a line of its own."""
+        return self.short
+
+    def robot(self, robot: Robot) -> Robot:
+        """The robot as it would have to be."""
+        return robot
+
+    def task(self, task: Task, robot: Robot) -> Task:
+        """The task as it would have to be for the robot."""
+        return task
+
+    def suitability(self, table: Scores) -> Scores:
+        """The suitability table as it would have to be."""
+        return table
+
+    def more_robots(self) -> tuple[Robot, ...]:
+        """The robots that there would have to be beside those of the mission."""
+        return ()
+
+    def other(self, other: Task, task: Task) -> Task:
+        """Another task of the mission as it would have to be."""
+        return other
+
+    def narrowed(self, tasks: int) -> Change | None:
+        """What of it is needed where the robot does so many tasks; None: nothing."""
+        return self
+
+    @property
+    def seconds(self) -> float:
+        """How much time the change gives; 0 for what is not about time."""
+        return 0.0
+
+
+class InPlan:
+    """Routes, and what one more task in them would do."""
+
+    is_timed: ClassVar[bool] = False
+
+    def __init__(self, problem: Question, routes: Sequence[Sequence[int]]) -> None:
+        self.problem = problem
+        self.routes = [list(route) for route in routes]
+        self.inspection = core.Inspection(problem.core, self.routes)
+        self.done = {j for route in routes for j in route}
+        self._at = lru_cache(maxsize=1)(self.inspection.cheapest_insertion)
+
+    def insertion(self, i: int, j: int) -> core.Insertion | None:
+        """Where in the route of robot i task j adds least usage and nothing deadlocks; None: nowhere."""
+        return self._at(i, j)
+
+    def with_task(self, i: int, j: int, at: int) -> list[list[int]]:
+        """The routes with task j at a place of the route of robot i, where it fits."""
+        return [[*route[:at], j, *route[at:]] if k == i else list(route) for k, route in enumerate(self.routes)]
+
+    def has_no_way(self, i: int) -> bool:
+        """Whether the route of robot i itself has a leg without a way."""
+        return math.isinf(self.inspection.usages[i])
+
+    def members(self, j: int) -> Sequence[int]:
+        """The robots that do a task."""
+        return ()
+
+    def kept_out(self, word: str, i: int, j: int) -> str | None:
+        """Why robot i cannot do task j at any place of its route, if that is by the rule of this word.
+
+        That is the first rule in the order of rules with which, beside those before it, no place is left. Only where
+        times, teams or relations matter.
+        """
+        return None
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """What is known of a robot and a task whatever the plan.
+
+    Parameters
+    ----------
+    limits
+        lower bounds of usage and times.
+    least
+        the least usage of any route of the robot that holds the task; inf where there is none.
+    lost_before
+        a prerequisite that can never be done; empty: none is known.
+    """
+
+    limits: Limits
+    least: float
+    lost_before: str = ""
+
+
+class Rule:
+    """One rule. What a rule does not say it leaves as it is here: nothing is refused.
+
+    Parameters
+    ----------
+    word
+        of reasons and of `--ignore`.
+    ignorable
+        whether it can be ignored.
+    about_one
+        whether it looks at one robot at a time; else at the teams that it can be in.
+    asked, for_good
+        what an allocator must be able to do to keep it, where not all can: words of `capabilities`; and whether one can
+        that never takes a task out of a route again.
+    lifted_late
+        whether reasons seek it among all places in a route, one such rule after the other in the order of rules.
+    of_a_route, of_the_team
+        whether a route keeps or breaks it whatever the others do; and whether it is said of a robot where another one
+        of the task's team breaks it.
+    kept_by_calls
+        whether calls at stations may keep a route from breaking it.
+    key, no_change
+        of its change in the plain data of a remedy, and what stands there where no change is needed; no key: a robot
+        is not changed for it, or not by it alone.
+    """
+
+    word: ClassVar[str]
+    ignorable: ClassVar[bool] = True
+    about_one: ClassVar[bool] = True
+    asked: ClassVar[tuple[str, ...]] = ()
+    for_good: ClassVar[bool] = True
+    lifted_late: ClassVar[bool] = False
+    of_a_route: ClassVar[bool] = False
+    of_the_team: ClassVar[bool] = False
+    kept_by_calls: ClassVar[bool] = False
+    key: ClassVar[str | None] = None
+    no_change: ClassVar[Any] = None
+
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        """For each word of `asked` the place of a problem that asks for it first; None: none does."""
+        return {}
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        """What the core has to know of it: arguments of `core.Problem`; what is empty binds nothing."""
+        return {}
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        """What it depends on of robot i, beside the tasks that the robot may do: the same for robots that are alike."""
+        return None
+
+    def kinds(self, problem: Question) -> Sequence[Hashable] | None:
+        """For each robot what `refusal` depends on, beside the task; None: it refuses nobody."""
+        return None
+
+    def refusal(self, problem: Question, i: int, j: int) -> str | None:
+        """Why robot i may not do task j whatever its route; None if it may."""
+        return None
+
+    def possible(self, limits: Limits) -> Bools | None:
+        """(m, n) the pairs that may be in an admissible plan, by lower bounds of usage and times; None: all."""
+        return None
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        """Why robot i can do task j in no admissible plan; None if it may."""
+        return self.refusal(problem, i, j)
+
+    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        """Why robot i does not do task j, which a plan leaves out; None if this rule does not keep it from it."""
+        refused = self.refusal(plan.problem, i, j)
+        return refused or (plan.kept_out(self.word, i, j) if self.lifted_late else None)
+
+    def concerns(self, problem: Question, j: int) -> bool:
+        """Whether the rule can keep a robot from task j by what the task itself is."""
+        return True
+
+    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
+        """How routes with one more task for robot i break it, where they break it least; None: by their times."""
+        return None
+
+    def never_used(self, mission: Mission, robot: Robot) -> str | None:
+        """Why a robot of a mission does nothing, whatever the plan; None if it may do something."""
+        return None
+
+    def too_few(self, problem: Question, i: int, tasks: int) -> bool:
+        """Whether robot i does not do so few tasks, though it may do more."""
+        return False
+
+    def lifted(self, problem: Question, i: int) -> Change | None:
+        """The change of robot i with which it is bound no more; less may do (`narrowed`). None: there is none."""
+        return None
+
+    def change(self, problem: Question, robot: Robot, task: Task) -> Change | None:
+        """The least change with which the rule does not refuse the pair; None if none is needed."""
+        return None
+
+
+def first_task(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
+    """The first task that has something, named with the key; None: there is none."""
+    first = next((task.id for j, task in enumerate(problem.tasks) if has(j)), None)
+    return None if first is None else f"task {first}: {key}"
+
+
+def first_robot(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
+    """The same of robots."""
+    first = next((robot.id for i, robot in enumerate(problem.robots) if has(i)), None)
+    return None if first is None else f"robot {first}: {key}"
+
+
+def limits_array(limits: Floats) -> Floats:
+    """Limits for the core, which takes none for infinite ones."""
+    return limits if np.isfinite(limits).any() else np.empty(0)
+
+
+def listed(names: Collection[str]) -> str:
+    """Names in one line."""
+    return ", ".join(names)

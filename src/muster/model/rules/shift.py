@@ -1,0 +1,104 @@
+"""A robot's route, the way to its end included, ends by the end of the robot's shift."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from muster.mission.model import Robot
+from muster.model.rules.rule import (
+    ROUNDING,
+    Bools,
+    Change,
+    Limits,
+    Outlook,
+    Question,
+    Rule,
+    first_robot,
+    limits_array,
+)
+from muster.model.rules.times import known_least, longer, moments
+
+
+@dataclass(frozen=True)
+class LongerShift(Change):
+    """A later end of a robot's shift: `until_s`, None without one; before `at_least_s` no admissible plan is enough.
+
+    `said` is the new end in words.
+    """
+
+    available_until_s: float
+    until_s: float | None
+    at_least_s: float | None = None
+    said: str = ""
+
+    @property
+    def plain(self) -> dict[str, float | None]:
+        return {name: value for name, value in asdict(self).items() if name != "said"}
+
+    @property
+    def seconds(self) -> float:
+        return math.inf if self.until_s is None else self.until_s - self.available_until_s
+
+    @property
+    def short(self) -> str:
+        return f"a shift until {self.said}"
+
+    @property
+    def line(self) -> str:
+        return f"{self.short}, {longer(self.seconds)} longer: {known_least(self.until_s, self.at_least_s)}"
+
+    def robot(self, robot: Robot) -> Robot:
+        return replace(robot, available_until_s=self.until_s)
+
+
+class Shift(Rule):
+    """The end of the route is at most `available_until_s`."""
+
+    word: ClassVar[str] = "shift"
+    asked = ("shift",)
+    lifted_late = True
+    key = "shift"
+
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        until = problem.timed_rules.available_until
+        return {"shift": first_robot(problem, "available_until_s", lambda i: np.isfinite(until[i]))}
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        return {"available_until": limits_array(problem.timed_rules.available_until)}
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        return float(problem.timed_rules.available_until[i])
+
+    def possible(self, limits: Limits) -> Bools | None:
+        if not limits.is_timed:
+            return None
+        until = limits.rules.available_until[:, None]
+        return np.asarray(limits.pair_end + limits.home <= until * (1 + ROUNDING))
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        limits = outlook.limits
+        if not limits.is_timed or beyond(problem, i, _end(limits, i, j)) is None:
+            return None
+        free = limits.without_shift(i)
+        (until,) = moments(problem, float(problem.timed_rules.available_until[i]))
+        late = None if free is None else beyond(problem, i, _end(free, i, j))
+        return late or f"what it waits for is too late for its shift, which ends at {until}"
+
+
+def _end(limits: Limits, i: int, j: int) -> float:
+    """A time before which no route of robot i with task j ends."""
+    return float(limits.pair_end[i, j] + limits.home[i, j])
+
+
+def beyond(problem: Question, i: int, end: float) -> str | None:
+    """That a route which ends at a time is beyond the robot's shift; None: it is not."""
+    until = float(problem.timed_rules.available_until[i])
+    if math.isinf(end) or end <= until * (1 + ROUNDING):
+        return None
+    back, over = moments(problem, end, until)
+    return f"its route would end at {back} at the earliest, its shift ends at {over}"

@@ -1,0 +1,229 @@
+"""A task with `robots_needed`, `team` or `needs` is done by as many robots, or by robots as able, as it needs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+
+from muster.mission.model import Robot, Task, TeamPart
+from muster.mission.texts.near_matches import did_you_mean
+from muster.model.bottleneck import fills, matched, on_some_matching
+from muster.model.plan_model import ability
+from muster.model.rules.rule import ROUNDING, Bools, Change, InPlan, Limits, Outlook, Question, Rule, listed
+
+_MOST_NAMED, _MOST_ADDED = 4, 10
+
+
+@dataclass(frozen=True)
+class MoreRobots(Change):
+    """Robots that there would have to be beside those of the mission, each like one of it or as a part asks for."""
+
+    robots: tuple[Robot, ...]
+    said: str
+
+    @property
+    def plain(self) -> list[dict[str, Any]]:
+        keys = ("id", "type", "kind", "skills", "abilities", "position")
+        return [{key: getattr(robot, key) for key in keys} for robot in self.robots]
+
+    @property
+    def short(self) -> str:
+        return self.said
+
+    def more_robots(self) -> tuple[Robot, ...]:
+        return self.robots
+
+
+class Team(Rule):
+    """The robot is fit for a part of the team, and the others that may be in it are enough."""
+
+    word: ClassVar[str] = "team"
+    about_one = False
+    asked = ("team",)
+    key = "team"
+
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        first = next(filter(problem.timed_rules.is_for_team, range(len(problem.tasks))), None)
+        if first is None:
+            return {"team": None}
+        task = problem.tasks[first]
+        return {"team": f"task {task.id}: {'needs' if task.needs else 'team' if task.team else 'robots_needed'}"}
+
+    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
+        rules, none = problem.timed_rules, np.empty(0)
+        if not rules.with_teams:
+            return {"parts": [], "abilities": none, "needs": none}
+        first_of_kind = np.unique(problem.kinds, return_index=True)[1]
+        tasks = range(len(problem.tasks))
+        parts = [
+            [(count, fits[first_of_kind].tolist()) for count, fits in rules.parts(j)] if rules.has_parts(j) else []
+            for j in tasks
+        ]
+        names = sorted({name for j in tasks for name in rules.needed(j)})
+        return {
+            "parts": parts,
+            "abilities": np.array([[ability(robot, name) for name in names] for robot in problem.robots]),
+            "needs": np.array([[rules.needed(j).get(name, 0.0) for name in names] for j in tasks]),
+        }
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        return problem.timed_rules.in_team(i)
+
+    def kinds(self, problem: Question) -> Sequence[Hashable] | None:
+        if not problem.timed_rules.with_teams:
+            return None
+        return [problem.timed_rules.in_team(i) for i in range(len(problem.robots))]
+
+    def refusal(self, problem: Question, i: int, j: int) -> str | None:
+        rules = problem.timed_rules
+        if not rules.is_for_team(j) or rules.needs(j):
+            return None
+        if any(fits[i] for _, fits in rules.parts(j)):
+            return None
+        return f"fits no part of the team: {needed(problem.tasks[j])}"
+
+    def possible(self, limits: Limits) -> Bools | None:
+        if not limits.rules.with_teams:
+            return None
+        possible = np.ones_like(limits.usable)
+        for j in filter(limits.rules.is_for_team, range(possible.shape[1])):
+            possible[:, j] = in_some_team(limits.problem, j, limits.alone[:, j])
+        return possible
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        refused = self.refusal(problem, i, j)
+        if refused or not problem.timed_rules.is_for_team(j):
+            return refused
+        return shortfall(problem, i, j, outlook.limits.alone[:, j])
+
+    def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
+        problem = plan.problem
+        refused = self.refusal(problem, i, j)
+        if refused or not problem.timed_rules.is_for_team(j):
+            return refused
+        allowed = np.array([problem.may(k, j) for k in range(len(problem.robots))], dtype=np.bool_)
+        return shortfall(problem, i, j, allowed) or plan.kept_out(self.word, i, j)
+
+
+def in_some_team(problem: Question, j: int, able: Bools) -> Bools:
+    """(m,) which of the robots that are able are in some team for a task."""
+    rules = problem.timed_rules
+    if rules.needs(j):
+        enough = all(abilities[able].sum() >= needed * (1 - ROUNDING) for needed, abilities in rules.needs(j))
+        return able if enough else np.zeros_like(able)
+    return np.asarray(on_some_matching(_places(problem, j, able)).any(axis=0))
+
+
+def shortfall(problem: Question, i: int, j: int, able: Bools) -> str | None:
+    """Why the robots that are able are no team for a task with robot i in it; None: they are enough."""
+    rules = problem.timed_rules
+    if not rules.is_for_team(j) or in_some_team(problem, j, able)[i]:
+        return None
+    names = [problem.robots[k].id for k in np.flatnonzero(able)]
+    wanted = f"needs {needed(problem.tasks[j])}"
+    if rules.needs(j):
+        task = problem.tasks[j]
+        sums = ", ".join(
+            f"{name} {float(a[able].sum()):g}" for name, (_, a) in zip(task.needs or {}, rules.needs(j), strict=True)
+        )
+        return f"{wanted}; all who can be there have {sums} together{_like_others(problem, j)}"
+    if not fills(_places(problem, j, able)):
+        return f"{wanted}; {_who(names)}"
+    return f"{wanted}; with it one place stays empty"
+
+
+def _like_others(problem: Question, j: int) -> str:
+    """Of the abilities that a task needs and no robot has, whether one that a robot has is spelt much like it."""
+    known = sorted({name for robot in problem.robots for name in robot.abilities or ()})
+    return "".join(did_you_mean(name, known) for name in problem.tasks[j].needs or () if name not in known)
+
+
+def needed(task: Task) -> str:
+    """What team a task needs, in a few words."""
+    if task.needs:
+        return ", ".join(f"{name} {value:g}" for name, value in task.needs.items())
+    if task.team:
+        return " and ".join(_part(part) for part in task.team)
+    having = f" with {listed(task.requires)}" if task.requires else ""
+    return f"{task.robots_needed} robots{having}"
+
+
+def _part(part: TeamPart) -> str:
+    kind = " ".join(filter(None, (part.kind and f"of kind {part.kind}", part.type and f"of type {part.type}")))
+    having = f"with {listed(part.requires)}" if part.requires else ""
+    return " ".join(filter(None, (str(part.count), kind, having)))
+
+
+def _who(names: Sequence[str]) -> str:
+    if not names:
+        return "no robot can be there"
+    if len(names) == 1:
+        return f"{names[0]} alone can be there"
+    more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
+    return f"only {listed(names[:_MOST_NAMED])}{more} can be there"
+
+
+def _places(problem: Question, j: int, able: Bools) -> Bools:
+    """(places, m) which robots fit where."""
+    rows = [fits & able for count, fits in problem.timed_rules.parts(j) for _ in range(count)]
+    return np.array(rows, dtype=np.bool_)
+
+
+def missing_robots(problem: Question, i: int, j: int, names: set[str]) -> MoreRobots | None:
+    """Robots that a team of a task with robot i in it lacks; None: none, or no such robot can be made up."""
+    rules, task, robot = problem.timed_rules, problem.tasks[j], problem.robots[i]
+    able = np.array([problem.may(k, j) for k in range(len(problem.robots))], dtype=np.bool_)
+    if not rules.is_for_team(j) or not able[i] or in_some_team(problem, j, able)[i]:
+        return None
+    if problem.mission.travel_rule == "matrix":
+        return None  # whose ways are known of the robots of the mission alone
+    if task.needs is not None:
+        return _as_able(problem, i, j, able, names)
+    owner = matched(_places(problem, j, able))
+    parts = [part for part in task.team or (TeamPart(count=task.robots_needed or 1),) for _ in range(part.count)]
+    empty = [part for place, part in enumerate(parts) if place not in owner.values()]
+    more = tuple(_fit_for(robot, part, _new_name(names, k)) for k, part in enumerate(empty))
+    kinds = {_like(robot, part): sum(_like(robot, other) == _like(robot, part) for other in empty) for part in empty}
+    return MoreRobots(more, f"{listed([_more(count, kind) for kind, count in kinds.items()])}") if more else None
+
+
+def _as_able(problem: Question, i: int, j: int, able: Bools, names: set[str]) -> MoreRobots | None:
+    """As many robots like robot i as make up for the abilities that are lacking, if it has all of these."""
+    count = 0
+    for needed_, abilities in problem.timed_rules.needs(j):
+        lacking = needed_ - float(abilities[able].sum())
+        if lacking > needed_ * ROUNDING and abilities[i] <= 0:
+            return None
+        if lacking > needed_ * ROUNDING:
+            count = max(count, math.ceil(lacking / float(abilities[i]) * (1 - ROUNDING)))
+    robot = problem.robots[i]
+    more = tuple(replace(robot, id=_new_name(names, k)) for k in range(count))
+    return MoreRobots(more, _more(count, f"like {robot.id}")) if 0 < count <= _MOST_ADDED else None
+
+
+def _fit_for(robot: Robot, part: TeamPart, name: str) -> Robot:
+    """A robot like another, as a part asks for."""
+    skills = tuple(dict.fromkeys((*robot.skills, *part.requires)))
+    return replace(robot, id=name, type=part.type or robot.type, kind=part.kind or robot.kind, skills=skills)
+
+
+def _like(robot: Robot, part: TeamPart) -> str:
+    asked = _part(replace(part, count=1))[2:]
+    return asked or f"like {robot.id}"
+
+
+def _more(count: int, kind: str) -> str:
+    return f"one more robot {kind}" if count == 1 else f"{count} more robots {kind}"
+
+
+def _new_name(names: set[str], k: int) -> str:
+    """An id that nothing of the mission has."""
+    number = k
+    while f"more_{number}" in names:
+        number += 1
+    names.add(f"more_{number}")
+    return f"more_{number}"
