@@ -29,9 +29,9 @@ def rules(*ignored):
 
 def test_times():
     some = rules()
-    assert some.windows == [[(1, 2), (5, math.inf)], [], [], [], []]
-    assert (some.deadline[0], some.due[0], some.available_until.tolist()) == (9, 4, [90, math.inf, math.inf])
-    assert some.lags(1) == [(0, 2, math.inf)]
+    assert some.openings == [[(1, 2), (5, math.inf)], [], [], [], []]
+    assert (some.ends_by[0], some.due[0], some.over_by.tolist()) == (9, 4, [90, math.inf, math.inf])
+    assert some.gaps(1) == [(0, 2, math.inf)]
     assert some.problem.has_timed_rules
 
 
@@ -47,15 +47,15 @@ def test_relations():
     some = rules()
     assert some.units == [[0], [1], [2, 3], [4]]
     assert some.unit == [0, 1, 2, 2, 3]
-    assert (some.same_robot, some.other_robot) == ([[], [4], [], [], [1]], [[3], [], [], [0], []])
+    assert (some.same_crew, some.apart) == ([[], [4], [], [], [1]], [[3], [], [], [0], []])
 
 
 def test_what_is_ignored_does_not_bind():
-    assert not any(rules("window").windows)
-    assert rules("deadline").deadline[0] == rules("shift").available_until[0] == math.inf
+    assert not any(rules("window").openings)
+    assert rules("deadline").ends_by[0] == rules("shift").over_by[0] == math.inf
     assert rules("deadline").due[0] == 4
     assert [rules("team").least_members(j) for j in range(5)] == [1] * 5
     assert len(rules("relation").units) == 5
-    assert rules("prerequisite").lags(1) == []
+    assert rules("prerequisite").gaps(1) == []
     words = ("window", "deadline", "shift", "team", "relation", "prerequisite")
     assert not Problem.compile(MISSION, ignored=words).has_timed_rules

@@ -17,7 +17,7 @@ from muster.mission.values.arrays import Bools, Floats
 ROUNDING = 2e-9
 """By how much a time may be above a limit, relative; a little more than the judge allows."""
 
-Windows = list[tuple[float, float]]
+Openings = list[tuple[float, float]]
 
 
 class Question(Protocol):
@@ -42,14 +42,14 @@ class TimedRules:
     problem: Question
 
     @cached_property
-    def windows(self) -> list[Windows]:
+    def openings(self) -> list[Openings]:
         """For each task when work on it may begin; empty: at any time."""
         if not self.problem.holds("window"):
             return [[] for _ in self.problem.tasks]
         return [[(a, math.inf if b is None else b) for a, b in task.window_s] for task in self.problem.tasks]
 
     @cached_property
-    def deadline(self) -> Floats:
+    def ends_by(self) -> Floats:
         """(n,) inf: none."""
         holds = self.problem.holds("deadline")
         return np.array([_limit(task.deadline_s if holds else None) for task in self.problem.tasks])
@@ -60,12 +60,12 @@ class TimedRules:
         return np.array([_limit(task.due_s) for task in self.problem.tasks])
 
     @cached_property
-    def available_until(self) -> Floats:
+    def over_by(self) -> Floats:
         """(m,) inf: always."""
         holds = self.problem.holds("shift")
         return np.array([_limit(robot.available_until_s if holds else None) for robot in self.problem.robots])
 
-    def lags(self, j: int) -> list[tuple[int, float, float]]:
+    def gaps(self, j: int) -> list[tuple[int, float, float]]:
         """The prerequisites of a task; how long after the end of each work begins, at least and at most."""
         task, found = self.problem.tasks[j], []
         for k in self.problem.prerequisites[j]:
@@ -94,12 +94,12 @@ class TimedRules:
         return [k for k in self.units[self.unit[j]] if k != j]
 
     @cached_property
-    def same_robot(self) -> list[list[int]]:
+    def same_crew(self) -> list[list[int]]:
         """For each task those that the same robots do."""
         return self._both_ways([self._related(task.same_robot_as) for task in self.problem.tasks])
 
     @cached_property
-    def other_robot(self) -> list[list[int]]:
+    def apart(self) -> list[list[int]]:
         """For each task those that none of its robots does."""
         return self._both_ways([self._related(task.other_robot_than) for task in self.problem.tasks])
 
@@ -133,7 +133,7 @@ class TimedRules:
     @cached_property
     def with_relations(self) -> bool:
         """Whether tasks are tied to others by who does them, or begin together."""
-        tied = any(map(any, (self.same_robot, self.other_robot)))
+        tied = any(map(any, (self.same_crew, self.apart)))
         return tied or len(self.units) < len(self.problem.tasks)
 
     def is_for_team(self, j: int) -> bool:
@@ -174,9 +174,9 @@ class TimedRules:
 
     def next_begin(self, j: int, times: Floats) -> Floats:
         """When work on a task may begin that is ready at some times; inf: not any more."""
-        if not self.windows[j]:
+        if not self.openings[j]:
             return times
-        opens, closes = np.array(self.windows[j]).T
+        opens, closes = np.array(self.openings[j]).T
         at = np.searchsorted(closes * (1 + ROUNDING), times)
         return np.asarray(np.maximum(times, np.append(opens, math.inf)[at]))
 

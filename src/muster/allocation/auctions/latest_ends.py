@@ -26,7 +26,7 @@ class LatestEnds:
 
     def __init__(self, problem: Problem) -> None:
         self._problem, rules = problem, problem.timed_rules
-        self._own = rules.deadline
+        self._own = rules.ends_by
         self._ends = _latest_ends(problem, rules)
         self._bound: dict[frozenset[int], Problem] = {}
 
@@ -66,7 +66,7 @@ def _latest_ends(problem: Problem, rules: TimedRules) -> Floats:
     shortest = np.where(problem.allowed, work, math.inf).min(axis=0, initial=math.inf)
     longest = np.where(problem.allowed, work, 0.0).max(axis=0, initial=0.0)
     before = {u: {rules.unit[k] for j in unit for k in problem.prerequisites[j]} for u, unit in enumerate(rules.units)}
-    ends = rules.deadline.copy()
+    ends = rules.ends_by.copy()
     for u in reversed(list(TopologicalSorter(before).static_order())):
         unit = rules.units[u]
         if np.isinf(shortest[unit]).any():
@@ -76,7 +76,7 @@ def _latest_ends(problem: Problem, rules: TimedRules) -> Floats:
             continue  # it is too late from the first
         for j in unit:
             ends[j] = min(ends[j], begin + longest[j])
-            for k, after, _ in rules.lags(j):
+            for k, after, _ in rules.gaps(j):
                 if after <= begin:  # else it is too late whenever the other ends
                     ends[k] = min(ends[k], begin - after)
     return ends
@@ -84,7 +84,7 @@ def _latest_ends(problem: Problem, rules: TimedRules) -> Floats:
 
 def _last_begin(rules: TimedRules, j: int, latest: float) -> float:
     """The last time up to `latest` at which work on a task may begin; -inf: none is."""
-    windows = rules.windows[j]
+    windows = rules.openings[j]
     return max(
         (min(latest, closes) for opens, closes in windows if opens <= latest), default=-math.inf if windows else latest
     )

@@ -72,7 +72,7 @@ class _Bounding:
             if np.array_equal(before, self._begins) or not np.isfinite(self._begins).all():
                 break
         ends, homes = self._after(self._work), self._after(self._work + self._home)
-        ends[ends > self._rules.deadline * (1 + ROUNDING)] = math.inf
+        ends[ends > self._rules.ends_by * (1 + ROUNDING)] = math.inf
         return EarliestTimes(self._begins, ends, homes)
 
     def _after(self, seconds: Floats) -> Floats:
@@ -82,7 +82,7 @@ class _Bounding:
     def _raise(self, j: int) -> None:
         """Raise the begin of a task by its prerequisites, its windows and the tasks that begin with it."""
         rules, begins = self._rules, self._begins
-        for k, after, within in rules.lags(j):
+        for k, after, within in rules.gaps(j):
             begins[j] = max(begins[j], self._end(k) + after)
             if math.isfinite(within):
                 begins[k] = max(begins[k], begins[j] - within - self._longest[k])

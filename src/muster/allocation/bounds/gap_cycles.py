@@ -58,7 +58,7 @@ def lag_cycle(works: Works, tasks: Sequence[int]) -> str:
 def _bounds(works: Works, j: int) -> Iterator[_Bound]:
     """The bounds by the lags of a task, and by the tasks that begin with it."""
     tasks, rules = works.problem.tasks, works.rules
-    for k, after, within in rules.lags(j):
+    for k, after, within in rules.gaps(j):
         name, before = tasks[j].id, tasks[k].id
         least = f"{name} begins at least {span(after)} after {before} ends"
         yield _Bound(k, j, float(works.shortest_work[k]) + after, least)

@@ -275,7 +275,7 @@ def _sweep(limits: Limits, times: _Times) -> bool:
     """Let tasks wait for their prerequisites; returns whether anything changed."""
     changed = False
     for j in range(len(times.begin)):
-        for k, after, _ in limits.rules.lags(j):
+        for k, after, _ in limits.rules.gaps(j):
             if math.isfinite(times.begin[k]):  # else it is left out, and so is all that waits for it
                 onward = times.begin[k] + limits.shortest_work[k] + max(after, _way(limits, k, j, limits.usable))
                 changed |= times.wait(limits.rules, j, onward, k)
@@ -284,7 +284,7 @@ def _sweep(limits: Limits, times: _Times) -> bool:
 
 def _too_far(limits: Limits, j: int) -> str:
     """That a task begins only so long after another, and the robot that must do both takes longer to come to it."""
-    for k, _, within in limits.rules.lags(j):
+    for k, _, within in limits.rules.gaps(j):
         way = _way(limits, k, j, limits.problem.allowed) if math.isfinite(within) else 0.0
         if way > within * (1 + ROUNDING) + ROUNDING:
             most, least = spans(within, way)
@@ -298,7 +298,7 @@ def _too_far(limits: Limits, j: int) -> str:
 def _held_back(limits: Limits, j: int) -> str:
     """Which task before a task would be too late in every plan that does both, as it may not end too long before."""
     tasks = [j, *limits.must_also(j)]
-    lags = [(k, b, within) for k in tasks for b, _, within in limits.rules.lags(k) if math.isfinite(within)]
+    lags = [(k, b, within) for k in tasks for b, _, within in limits.rules.gaps(k) if math.isfinite(within)]
     if not lags:
         return ""
     times = _Times(limits.ready.copy(), limits.begin.copy(), list(limits.awaited))
@@ -339,7 +339,7 @@ def _way(limits: Limits, k: int, j: int, usable: Bools) -> float:
     alone = len(robots) == 1 and len(others) == 1 and robots[0] == others[0]
     if len(limits.problem.shortcuts()):
         return 0.0  # a way through another task may be shorter
-    if not (alone or k in limits.rules.same_robot[j] or j in limits.rules.same_robot[k]):
+    if not (alone or k in limits.rules.same_crew[j] or j in limits.rules.same_crew[k]):
         return 0.0
     both = np.flatnonzero(usable[:, k] & usable[:, j]).tolist()
     return min((float(limits.problem.travel_seconds(i, [k], [j])[0, 0]) for i in both), default=0.0)

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from muster.allocation.bounds.energy_curve import Curve
 from muster.allocation.bounds import energy_curve
+from muster.allocation.bounds.energy_curve import Curve
 from muster.mission.stations import Station
 from muster.model.problem import Problem
 from muster.model.rules.battery import energy_at_start, energy_room
@@ -113,10 +113,10 @@ class _Robot:
         self._work, self._takes = problem.work_usage(i), problem.work_seconds(i)
         self._full = energy_room(self._robot) if problem.holds("battery") else math.inf
         self._drains = math.isfinite(self._full)
-        self._until = float(problem.timed_rules.available_until[i]) * (1 + _ROUNDING)
+        self._until = float(problem.timed_rules.over_by[i]) * (1 + _ROUNDING)
         self._most = float(problem.capacity[i]) * (1 + _ROUNDING) + _ROUNDING
-        self._goods = range(loads["commodities"])
-        self._room = [float(loads["load_capacity"][i, c]) for c in self._goods]
+        self._goods = range(loads["meters"])
+        self._room = [float(loads["most_aboard"][i, c]) for c in self._goods]
         self._known: dict[tuple[int, ...], list[_Label]] = {(): [self._first()]}
         self._left = 0
 
@@ -231,8 +231,8 @@ class _Robot:
         rules, usage, takes = self._problem.timed_rules, float(self._work[j]), float(self._takes[j])
         if label.usage + usage > self._most or not self._is_carried(label, on_board):
             return
-        latest = (float(rules.deadline[j]) - takes) * (1 + _ROUNDING) + _ROUNDING
-        for opens, closes in rules.windows[j] or ((-math.inf, math.inf),):
+        latest = (float(rules.ends_by[j]) - takes) * (1 + _ROUNDING) + _ROUNDING
+        for opens, closes in rules.openings[j] or ((-math.inf, math.inf),):
             curve = energy_curve.begun(label.curve, opens, min(latest, closes * (1 + _ROUNDING) + _ROUNDING))
             curve = energy_curve.shifted(curve, takes, usage if self._drains else 0.0)
             if self._drains:

@@ -23,7 +23,7 @@ def subset_ends(limits: Limits, i: int, tasks: Sequence[int]) -> Floats:
     work = problem.work_seconds(i)
     ways = ways_of(problem, i, tasks, problem.travel_seconds, work)
     long = np.maximum(work, limits.shortest_work)[list(tasks)]
-    after, until = followers(problem, tasks), rules.deadline[list(tasks)] * (1 + ROUNDING)
+    after, until = followers(problem, tasks), rules.ends_by[list(tasks)] * (1 + ROUNDING)
     ends = np.full((1 << count, count), math.inf)  # by tasks done and the last of them
 
     def ended(k: int, arrival: float) -> float:
@@ -40,7 +40,7 @@ def subset_ends(limits: Limits, i: int, tasks: Sequence[int]) -> Floats:
             if not done >> k & 1 and not done & after[k] and math.isfinite(arrivals[k]):
                 ends[done | 1 << k, k] = ended(k, float(arrivals[k]))
     least = np.asarray((ends + ways[1:-1, -1]).min(axis=1, initial=math.inf))
-    least[least > rules.available_until[i] * (1 + ROUNDING)] = math.inf
+    least[least > rules.over_by[i] * (1 + ROUNDING)] = math.inf
     least[0] = 0.0
     return least
 
@@ -52,9 +52,9 @@ def keep_relations(problem: Problem, tasks: Sequence[int]) -> Bools:
     for k, j in enumerate(tasks):
         for at, other in enumerate(tasks[:k]):
             both = sets >> k & 1, sets >> at & 1
-            if other in rules.same_robot[j]:
+            if other in rules.same_crew[j]:
                 able &= both[0] == both[1]
-            if other in rules.other_robot[j] or other in rules.beginning_with(j):
+            if other in rules.apart[j] or other in rules.beginning_with(j):
                 able &= (both[0] & both[1]) == 0
     return able
 
@@ -99,12 +99,12 @@ def _done_before(problem: Problem, j: int) -> set[int]:
 def tied_pairs(problem: Problem, tasks: Sequence[int]) -> list[tuple[int, int]]:
     """Pairs of tasks of which it matters whether the same robots do them."""
     rules, chosen = problem.timed_rules, set(tasks)
-    tied = ({*rules.same_robot[j], *rules.other_robot[j], *rules.beginning_with(j)} for j in tasks)
+    tied = ({*rules.same_crew[j], *rules.apart[j], *rules.beginning_with(j)} for j in tasks)
     return [(j, k) for j, others in zip(tasks, tied, strict=True) for k in sorted(others & chosen) if j < k]
 
 
 def sizes_that_differ(problem: Problem, tasks: Sequence[int]) -> tuple[int, int] | None:
     """Two of the tasks that the same robots must do, though one needs more of them; None: there are none."""
     rules = problem.timed_rules
-    pairs = ((j, k) for j, k in tied_pairs(problem, tasks) if k in rules.same_robot[j] and rules.sizes_differ(j, k))
+    pairs = ((j, k) for j, k in tied_pairs(problem, tasks) if k in rules.same_crew[j] and rules.sizes_differ(j, k))
     return next(pairs, None)

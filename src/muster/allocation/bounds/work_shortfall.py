@@ -175,7 +175,7 @@ def _resources(problem: Problem, possible: Bools, tasks: Sequence[int]) -> Itera
     robots = range(len(problem.robots))
     seconds = np.array([problem.work_seconds(i) for i in robots])
     rules, start = problem.timed_rules, np.array([robot.available_from_s for robot in problem.robots])
-    until = rules.available_until
+    until = rules.over_by
     longest = seconds.max(axis=0, initial=0.0)  # a team takes as long as its slowest member
     last = np.array([_last_end(problem, [j for j in tasks if possible[i, j]], longest) for i in robots])
     has = np.maximum(0.0, np.minimum(until, last) - start)
@@ -192,7 +192,7 @@ def _last_end(problem: Problem, tasks: Sequence[int], longest: Floats) -> float:
     """When the last of some tasks ends at the latest, by windows and deadlines."""
     rules = problem.timed_rules
     ends = [
-        min(float(rules.deadline[j]), rules.windows[j][-1][1] + float(longest[j]) if rules.windows[j] else math.inf)
+        min(float(rules.ends_by[j]), rules.openings[j][-1][1] + float(longest[j]) if rules.openings[j] else math.inf)
         for j in tasks
     ]
     return max(ends, default=0.0)

@@ -66,7 +66,7 @@ def add_goods(circuits: Circuits) -> None:
                 model.add(circuits.does.get((i, j), 0) == circuits.does.get((i, k), 0))
     _loads(circuits)
     if problem.asked.get("battery") and not any(station.gives_energy for station in problem.mission.stations):
-        for i, most in enumerate(Battery().core_arrays(problem)["battery_at_start"]):
+        for i, most in enumerate(Battery().core_arrays(problem)["energy_at_start"]):
             if np.isfinite(most):
                 model.add(circuits.usage[i] <= circuits.costs.scale.at_most(float(most)))
 
@@ -82,8 +82,8 @@ def _loads(circuits: Circuits) -> None:
     if circuits.rules.with_teams:
         return  # each member takes it on board: left to the cuts
     change, first = ("pending", "pending_at_start") if _unloads(problem) else ("load", "load_at_start")
-    for c in range(arrays["commodities"]):
-        own = arrays[change][:, c], arrays[first][:, c], arrays["load_capacity"][:, c]
+    for c in range(arrays["meters"]):
+        own = arrays[change][:, c], arrays[first][:, c], arrays["most_aboard"][:, c]
         _commodity(circuits, *own)
 
 

@@ -78,11 +78,11 @@ def _enough_tasks(circuits: Circuits) -> None:
 def _relations(circuits: Circuits) -> None:
     rules, model = circuits.rules, circuits.model
     for j in circuits.tasks:
-        for k in rules.same_robot[j]:
+        for k in rules.same_crew[j]:
             for i in circuits.robots:
                 a, b = circuits.does.get((i, j), 0), circuits.does.get((i, k), 0)
                 model.add(a == b).only_enforce_if(circuits.done[j], circuits.done[k])
-        for k in rules.other_robot[j]:
+        for k in rules.apart[j]:
             for i in circuits.robots:
                 if (i, j) in circuits.does and (i, k) in circuits.does:
                     model.add_at_most_one(circuits.does[i, j], circuits.does[i, k])

@@ -43,8 +43,8 @@ class Times:
     def _latest_base(self) -> float:
         """No time is later than this by more than travel and work of all tasks: the latest that all begins from."""
         rules = self._rules
-        opens = (window[0] for windows in rules.windows for window in windows)
-        lags = sum(after for j in self._circuits.tasks for _, after, _ in rules.lags(j))
+        opens = (window[0] for windows in rules.openings for window in windows)
+        lags = sum(after for j in self._circuits.tasks for _, after, _ in rules.gaps(j))
         return float(max(chain(self.available, opens))) + lags
 
     def _follow_routes(self) -> None:
@@ -58,7 +58,7 @@ class Times:
     def _follow_prerequisites(self) -> None:
         circuits, model = self._circuits, self._model
         for j in circuits.tasks:
-            for k, after, within in self._rules.lags(j):
+            for k, after, within in self._rules.gaps(j):
                 done = circuits.done[j]
                 earliest = self.end[k] + self._down(after)
                 model.add(self.begin[j] >= earliest).only_enforce_if(done)
@@ -80,16 +80,16 @@ class Times:
         rules, model = self._rules, self._model
         for j in self._circuits.tasks:
             done = self._circuits.done[j]
-            if math.isfinite(rules.deadline[j]):
-                model.add(self.end[j] <= self._at_most(rules.deadline[j])).only_enforce_if(done)
-            if rules.windows[j]:
-                spans = [[self._down(begin), self._at_most(end)] for begin, end in rules.windows[j]]
+            if math.isfinite(rules.ends_by[j]):
+                model.add(self.end[j] <= self._at_most(rules.ends_by[j])).only_enforce_if(done)
+            if rules.openings[j]:
+                spans = [[self._down(begin), self._at_most(end)] for begin, end in rules.openings[j]]
                 allowed = cp_model.Domain.from_intervals([span for span in spans if span[0] <= span[1]])
                 model.add_linear_expression_in_domain(self.begin[j], allowed).only_enforce_if(done)
 
     def _keep_shifts(self) -> None:
         for (i, j, end), leg in self._circuits.homeward():
-            until = self._rules.available_until[i]
+            until = self._rules.over_by[i]
             if math.isfinite(until):
                 home = self.end[j] + self._circuits.travel(self.costs, (i, j, end))
                 self._model.add(home <= self._at_most(until)).only_enforce_if(leg)

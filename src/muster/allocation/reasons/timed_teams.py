@@ -110,12 +110,12 @@ class TimedTeams(InPlan):
 
     def _keeps_relations(self, k: int, j: int) -> bool:
         rules = self.problem.timed_rules
-        same = all(not self.members(other) or k in self.members(other) for other in rules.same_robot[j])
-        return same and not any(k in self.members(other) for other in rules.other_robot[j])
+        same = all(not self.members(other) or k in self.members(other) for other in rules.same_crew[j])
+        return same and not any(k in self.members(other) for other in rules.apart[j])
 
     def _members_by_relation(self, j: int) -> set[int] | None:
         """The robots that do the tasks of the plan which the same robots must do; None: there are no such tasks."""
-        teams = [set(self.members(k)) for k in self.problem.timed_rules.same_robot[j] if self.members(k)]
+        teams = [set(self.members(k)) for k in self.problem.timed_rules.same_crew[j] if self.members(k)]
         return set.intersection(*teams) if teams else None
 
 

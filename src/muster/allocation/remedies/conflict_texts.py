@@ -61,9 +61,9 @@ def _tied(bounds: UsageBounds, tasks: list[int]) -> str:
         first, then = (np.flatnonzero(bounds.possible[:, t]).tolist() for t in (j, k))
         who = [", ".join(problem.robots[i].id for i in some) or "nobody" for some in (first, then)]
         a, b = problem.tasks[j].id, problem.tasks[k].id
-        if k in rules.same_robot[j] and not set(first) & set(then):
+        if k in rules.same_crew[j] and not set(first) & set(then):
             return f"the same robot must do {a} and {b}; {a} only {who[0]} can do, {b} only {who[1]}"
-        if k not in rules.same_robot[j] and len(first) == 1 and first == then:
+        if k not in rules.same_crew[j] and len(first) == 1 and first == then:
             return f"different robots must do {a} and {b}, and only {who[0]} can do them"
     return ""
 
@@ -103,9 +103,9 @@ def _however(bounds: UsageBounds, robots: list[int], tasks: list[int], names: st
         return f"however {names} share them out, one of the robots would need more than its capacity"
     limited = np.isfinite(problem.capacity[robots]).any()
     breaks = "be too late or need more than its capacity" if limited else "be too late"
-    windows = (limits.rules.windows[j] for j in tasks)
+    windows = (limits.rules.openings[j] for j in tasks)
     closes = np.array([spans[-1][1] if spans else math.inf for spans in windows])
-    last = float(np.minimum(closes, limits.rules.deadline[tasks]).max())
+    last = float(np.minimum(closes, limits.rules.ends_by[tasks]).max())
     until = f"; all must begin or end by {moments(problem, last)[0]}" if math.isfinite(last) else ""
     if len(robots) == 1:
         return f"only {names} can do them, and in every order it would {breaks}{until}"

@@ -142,12 +142,12 @@ def _lifted_and_tried(
 def _without_limits(problem: Problem, i: int, j: int) -> dict[str, Change]:
     """The window and the deadline of the task and the shift of the robot without ends, as far as they have one."""
     rules, found = problem.timed_rules, dict[str, Change]()
-    if rules.windows[j] and math.isfinite(rules.windows[j][-1][1]):
-        found["window"] = LongerWindow(rules.windows[j][-1][1], None)
-    if math.isfinite(rules.deadline[j]):
-        found["deadline"] = LaterDeadline(float(rules.deadline[j]), None)
-    if math.isfinite(rules.available_until[i]):
-        found["shift"] = LongerShift(float(rules.available_until[i]), None)
+    if rules.openings[j] and math.isfinite(rules.openings[j][-1][1]):
+        found["window"] = LongerWindow(rules.openings[j][-1][1], None)
+    if math.isfinite(rules.ends_by[j]):
+        found["deadline"] = LaterDeadline(float(rules.ends_by[j]), None)
+    if math.isfinite(rules.over_by[i]):
+        found["shift"] = LongerShift(float(rules.over_by[i]), None)
     return found
 
 
@@ -187,10 +187,10 @@ def _lack(
     """What a plan needs beyond the limits of task and robot, kinds of change and seconds, then its robot's usage."""
     begin, end, over = _times(opened, routes, found, at, of)
     rules = problem.timed_rules
-    close = rules.windows[j][-1][1] if rules.windows[j] else math.inf
+    close = rules.openings[j][-1][1] if rules.openings[j] else math.inf
     beyond = [
         time - limit
-        for time, limit in ((begin, close), (end, float(rules.deadline[j])), (over, float(rules.available_until[i])))
+        for time, limit in ((begin, close), (end, float(rules.ends_by[j])), (over, float(rules.over_by[i])))
         if time > limit * (1 + ROUNDING)
     ]
     used = found.usages[at]
@@ -222,13 +222,13 @@ def _needed(
     if isinstance(battery := narrowed.get("battery"), LargerBattery):
         narrowed["battery"] = battery.for_usage(problem.robots[i], inspection.usages[at])
     changes = {word: change for word, change in narrowed.items() if change is not None}
-    if rules.windows[j] and begin > rules.windows[j][-1][1] * (1 + ROUNDING):
-        changes["window"] = LongerWindow(rules.windows[j][-1][1], begin, float(limits.pair_begin[at, of]))
-    if end > rules.deadline[j] * (1 + ROUNDING):
-        changes["deadline"] = LaterDeadline(float(rules.deadline[j]), end, float(limits.pair_end[at, of]))
-    if over > rules.available_until[i] * (1 + ROUNDING):
+    if rules.openings[j] and begin > rules.openings[j][-1][1] * (1 + ROUNDING):
+        changes["window"] = LongerWindow(rules.openings[j][-1][1], begin, float(limits.pair_begin[at, of]))
+    if end > rules.ends_by[j] * (1 + ROUNDING):
+        changes["deadline"] = LaterDeadline(float(rules.ends_by[j]), end, float(limits.pair_end[at, of]))
+    if over > rules.over_by[i] * (1 + ROUNDING):
         least = float(limits.pair_end[at, of] + limits.home[at, of])
-        changes["shift"] = LongerShift(float(rules.available_until[i]), over, least, moments(problem, over)[0])
+        changes["shift"] = LongerShift(float(rules.over_by[i]), over, least, moments(problem, over)[0])
     now = remedy.capacity.now
     used = inspection.usages[at] / (1.0 - problem.mission.rules.capacity_reserve)
     enough = None if now is None else max(used, now)

@@ -1,1 +1,1 @@
-"""Ruin and recreate under simulated annealing; large teams in parts, on threads or machines; short searches for witnesses."""
+"""Ruin and recreate under simulated annealing; large teams in parts, on threads or machines; short searches."""

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "plans/draft.hpp"
-#include "random.hpp"
 #include "plans/routes.hpp"
+#include "random.hpp"
 
 namespace muster {
 

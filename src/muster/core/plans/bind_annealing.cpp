@@ -3,8 +3,8 @@
 
 #include <stdexcept>
 
-#include "plans/annealing.hpp"
 #include "bindings.hpp"
+#include "plans/annealing.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

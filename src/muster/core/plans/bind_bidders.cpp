@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "plans/bidders.hpp"
 #include "bindings.hpp"
+#include "plans/bidders.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -38,7 +38,7 @@ std::optional<AllStops> all_stops_of(Inspection& inspection) {
   AllStops stops;
   for (const auto& row : *found) {
     auto& own = stops.emplace_back();
-    for (const StopTimes& stop : row) own.emplace_back(stop.place, stop.arrive, stop.begin, stop.end, stop.charged);
+    for (const StopTimes& stop : row) own.emplace_back(stop.place, stop.arrive, stop.begin, stop.end, stop.refilled);
   }
   return stops;
 }
@@ -65,7 +65,7 @@ void bind_inspection(nb::module_& m) {
           "stops", &stops_of,
           "By robot: task, arrival, begin and end of each stop of the earliest schedule; None if there is none.")
       .def_prop_ro("all_stops", &all_stops_of,
-                   "The same with those at stations: place, arrival, begin, end and what is charged.")
+                   "The same with those at stations: place, arrival, begin, end and what is refilled.")
       .def("cheapest_insertion", &Inspection::cheapest_insertion, "robot"_a, "task"_a,
            nb::call_guard<nb::gil_scoped_release>(),
            "The place in the robot's route where the task adds least usage and nothing deadlocks, whatever the "

@@ -47,12 +47,12 @@ Rows rows(const std::vector<std::vector<int>>& lists) {
   return result;
 }
 
-using Windows = std::vector<std::vector<std::pair<double, double>>>;
+using Openings = std::vector<std::vector<std::pair<double, double>>>;
 using Parts = std::vector<std::vector<std::pair<int, std::vector<bool>>>>;
 
-std::vector<std::vector<TimeWindow>> windows_of(const Windows& windows) {
-  std::vector<std::vector<TimeWindow>> result;
-  for (const auto& row : windows) {
+std::vector<std::vector<Opening>> openings_of(const Openings& openings) {
+  std::vector<std::vector<Opening>> result;
+  for (const auto& row : openings) {
     auto& own = result.emplace_back();
     for (const auto& [open, close] : row) own.push_back({open, close});
   }
@@ -63,8 +63,8 @@ using Stations = std::vector<std::tuple<double, double, bool, bool, int>>;
 
 std::vector<Station> stations_of(const Stations& stations) {
   std::vector<Station> result;
-  for (const auto& [charge, swap_s, unloads, partial, slots] : stations) {
-    result.push_back({charge, swap_s, unloads, partial, slots});
+  for (const auto& [refill, swap_s, unloads, partial, slots] : stations) {
+    result.push_back({refill, swap_s, unloads, partial, slots});
   }
   return result;
 }
@@ -88,13 +88,13 @@ void bind_problem(nb::module_& m) {
              Numbers available_from, Flags must_end, Indices fixed, Numbers actuation_cost, Indices work_class,
              Numbers work_seconds, Indices time_class, Numbers priority, Indices kind, Flags allowed,
              const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Indices place_class,
-             Numbers table, Indices travel_class, const Windows& windows, Numbers deadline, Numbers due,
-             Numbers available_until, Numbers after, Numbers within, Indices unit, const Parts& parts,
-             Numbers abilities, Numbers needs, const std::vector<std::vector<int>>& same_robot,
-             const std::vector<std::vector<int>>& other_robot, Indices min_tasks, Numbers acceleration, Numbers climb,
-             Numbers turn, bool over_map, bool makespan_includes_return, int commodities, Numbers load, Numbers pending,
-             Indices pickup, Numbers load_capacity, Numbers load_at_start, Numbers pending_at_start, Numbers battery,
-             Numbers battery_at_start, const Stations& stations, Numbers waiting, Flags waits) {
+             Numbers table, Indices travel_class, const Openings& openings, Numbers ends_by, Numbers due,
+             Numbers over_by, Numbers gap_least, Numbers gap_most, Indices unit, const Parts& parts, Numbers abilities,
+             Numbers needs, const std::vector<std::vector<int>>& same_crew, const std::vector<std::vector<int>>& apart,
+             Indices least_stops, Numbers acceleration, Numbers climb, Numbers turn, bool over_map,
+             bool makespan_includes_return, int meters, Numbers load, Numbers pending, Indices pickup,
+             Numbers most_aboard, Numbers load_at_start, Numbers pending_at_start, Numbers energy,
+             Numbers energy_at_start, const Stations& stations, Numbers waiting, Flags waits) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
                 entry.ndim() != 3 || entry.shape(2) != 3 || exit.ndim() != 3 || exit.shape(2) != 3 || !table_fits) {
@@ -121,33 +121,33 @@ void bind_problem(nb::module_& m) {
             data.place_class.assign(place_class.data(), place_class.data() + place_class.size());
             data.table = numbers(table);
             data.travel_class.assign(travel_class.data(), travel_class.data() + travel_class.size());
-            data.windows = windows_of(windows);
-            data.deadline = numbers(deadline);
+            data.openings = openings_of(openings);
+            data.ends_by = numbers(ends_by);
             data.due = numbers(due);
-            data.available_until = numbers(available_until);
-            data.after = numbers(after);
-            data.within = numbers(within);
+            data.over_by = numbers(over_by);
+            data.gap_least = numbers(gap_least);
+            data.gap_most = numbers(gap_most);
             data.unit.assign(unit.data(), unit.data() + unit.size());
             data.parts = parts_of(parts);
             data.abilities = numbers(abilities);
             data.needs = numbers(needs);
-            data.same_robot = rows(same_robot);
-            data.other_robot = rows(other_robot);
-            data.min_tasks.assign(min_tasks.data(), min_tasks.data() + min_tasks.size());
+            data.same_crew = rows(same_crew);
+            data.apart = rows(apart);
+            data.least_stops.assign(least_stops.data(), least_stops.data() + least_stops.size());
             data.acceleration = numbers(acceleration);
             data.climb = numbers(climb);
             data.turn = numbers(turn);
             data.over_map = over_map;
             data.makespan_includes_return = makespan_includes_return;
-            data.commodities = commodities;
+            data.meters = meters;
             data.load = numbers(load);
             data.pending = numbers(pending);
             data.pickup.assign(pickup.data(), pickup.data() + pickup.size());
-            data.load_capacity = numbers(load_capacity);
+            data.most_aboard = numbers(most_aboard);
             data.load_at_start = numbers(load_at_start);
             data.pending_at_start = numbers(pending_at_start);
-            data.battery = numbers(battery);
-            data.battery_at_start = numbers(battery_at_start);
+            data.energy = numbers(energy);
+            data.energy_at_start = numbers(energy_at_start);
             data.stations = stations_of(stations);
             data.waiting = numbers(waiting);
             data.waits = flags(waits);
@@ -156,29 +156,29 @@ void bind_problem(nb::module_& m) {
           nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "available_from"_a, "must_end"_a,
           "fixed"_a, "actuation_cost"_a, "work_class"_a, "work_seconds"_a, "time_class"_a, "priority"_a, "kind"_a,
           "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "place_class"_a, "table"_a, "travel_class"_a,
-          "windows"_a, "deadline"_a, "due"_a, "available_until"_a, "after"_a, "within"_a, "unit"_a, "parts"_a,
-          "abilities"_a, "needs"_a, "same_robot"_a, "other_robot"_a, "min_tasks"_a, "acceleration"_a, "climb"_a,
-          "turn"_a, "over_map"_a, "makespan_includes_return"_a, "commodities"_a, "load"_a, "pending"_a, "pickup"_a,
-          "load_capacity"_a, "load_at_start"_a, "pending_at_start"_a, "battery"_a, "battery_at_start"_a, "stations"_a,
-          "waiting"_a, "waits"_a,
+          "openings"_a, "ends_by"_a, "due"_a, "over_by"_a, "gap_least"_a, "gap_most"_a, "unit"_a, "parts"_a,
+          "abilities"_a, "needs"_a, "same_crew"_a, "apart"_a, "least_stops"_a, "acceleration"_a, "climb"_a, "turn"_a,
+          "over_map"_a, "makespan_includes_return"_a, "meters"_a, "load"_a, "pending"_a, "pickup"_a, "most_aboard"_a,
+          "load_at_start"_a, "pending_at_start"_a, "energy"_a, "energy_at_start"_a, "stations"_a, "waiting"_a,
+          "waits"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
           "`time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, "
           "3) metres in the map frame for tasks, starts and ends of robots, and `place_class` is (m,); `table`, where "
           "ways are not straight, is (classes, n + 2m, n + 2m) metres with each "
           "robot's "
-          "`travel_class`. What is empty of the rest no task or robot has: by task `windows`, `deadline`, `due`, "
+          "`travel_class`. What is empty of the rest no task or robot has: by task `openings`, `ends_by`, `due`, "
           "`unit` "
-          "(tasks of one begin together), `parts` of teams (count, allowed by kind), `same_robot`, `other_robot`; by "
-          "robot `available_until`, `min_tasks` (of a route that has any); `after` and `within` by prerequisite; "
+          "(tasks of one begin together), `parts` of teams (count, allowed by kind), `same_crew`, `apart`; by "
+          "robot `over_by`, `least_stops` (of a route that has any); `gap_least` and `gap_most` by prerequisite; "
           "`abilities` (m, a) and `needs` (n, a); by "
           "robot `acceleration`, `climb`, `turn` (seconds) of motion profiles, and `over_map` whether what is longer "
           "than "
-          "the straight way has bends; `load` and `pending` (n, commodities) what a task adds to the load, and how "
+          "the straight way has bends; `load` and `pending` (n, meters) what a task adds to the load, and how "
           "much "
           "of that another delivers, `pickup` (n,) the task that takes on what a task delivers, -1 for none, "
-          "`load_capacity` and `load_at_start` (m, commodities); `battery` and `battery_at_start` (m,) in the unit of "
-          "usage, the reserve taken off, inf without a battery; `stations` (charge by second, swap_s, unloads, "
+          "`most_aboard` and `load_at_start` (m, meters); `energy` and `energy_at_start` (m,) in the unit of "
+          "usage, the reserve taken off, inf without a limit of energy; `stations` (refill by second, swap_s, unloads, "
           "partial, "
           "slots), whose places stand after the ends of robots; `waiting` (n + 2m, n + 2m) seconds for others between "
           "places, of the robots "

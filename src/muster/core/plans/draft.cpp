@@ -34,12 +34,12 @@ void Draft::assign(std::span<const int> tasks, std::span<const int> robots) {
   for (const int robot : robots) ++first_[robot + 1];
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   order_.resize(tasks.size());
-  // Filling moves each robot's beginning to the next one's; shifting them back is cheaper than a second array.
+  // Filling moves each robot's beginning to the next one's; moving them back is cheaper than a second array.
   for (std::size_t k = 0; k < tasks.size(); ++k) {
     order_[first_[robots[k]]++] = tasks[k];
     robot_of_[tasks[k]] = robots[k];
   }
-  std::shift_right(first_.begin(), first_.end(), 1);
+  std::move_backward(first_.begin(), first_.end() - 1, first_.end());
   first_.front() = 0;
 }
 

@@ -9,7 +9,7 @@
 namespace muster {
 
 // The most energy that a robot can have at a place by the time at which it is there: concave, rising with time from
-// point to point, constant after the last one. Who charges longer is there later. Of many points some are left out,
+// point to point, constant after the last one. Who refills longer is there later. Of many points some are left out,
 // which leaves a frontier below the true one.
 class Frontier {
  public:
@@ -45,7 +45,7 @@ class Frontier {
     return last().time;
   }
 
-  void shift(double seconds, double energy) {
+  void advance(double seconds, double energy) {
     for (int k = 0; k < size_; ++k) {
       points_[k].time += seconds;
       points_[k].energy -= energy;
@@ -79,7 +79,7 @@ class Frontier {
     push({time, energy});
   }
 
-  // The corner at which a slower charge begins: after it waiting here pays more than what is behind it. Of two charges
+  // The corner at which a slower refill begins: after it waiting here pays more than what is behind it. Of two refills
   // at one rate the later one does, whatever rounding says: tasks between them begin earlier then.
   Point corner(double rate) const {
     int k = 0;
@@ -89,13 +89,13 @@ class Frontier {
     }
     return points_[k];
   }
-  // Charges at a rate, up to a level.
-  void charge(double rate, double full) {
+  // Refills at a rate, up to a level.
+  void refill(double rate, double full) {
     const Point from = corner(rate);
     while (last().time > from.time) --size_;
     if (from.energy < full) push({from.time + (full - from.energy) / rate, full});
   }
-  // Charges until it is full.
+  // Refills until it is full.
   void fill(double rate, double full) {
     const Point from = corner(rate);
     *this = Frontier(from.time + std::max(0.0, full - from.energy) / rate, full);

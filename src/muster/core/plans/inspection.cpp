@@ -75,7 +75,7 @@ std::vector<Insertion> Inspection::insertions(int robot, int task) const {
   for (int k = length - 1; k > 0; --k) {
     rest[k - 1] = problem_.on_to(robot, rest[k], route[k - 1], route[k]);
   }
-  const Window allowed = window(problem_, route, task);
+  const Stretch allowed = stretch(problem_, route, task);
   std::vector<Insertion> places;
   double usage = 0.0;
   for (int at = 0; at <= allowed.latest; ++at) {

@@ -5,8 +5,8 @@
 
 namespace muster {
 
-Window window(const Problem& problem, std::span<const int> route, int task) {
-  Window result{0, static_cast<int>(route.size())};
+Stretch stretch(const Problem& problem, std::span<const int> route, int task) {
+  Stretch result{0, static_cast<int>(route.size())};
   const auto before = problem.prerequisites(task), after = problem.dependants(task);
   if (before.empty() && after.empty()) return result;
   for (int k = 0; k < static_cast<int>(route.size()); ++k) {
@@ -100,7 +100,7 @@ int choose_robot(const Problem& problem, Random& random, int task, int present) 
 }
 
 // Step 5: the task leaves its sequence and stands at a random place within the bounds.
-Mutation moved(Random& random, const Draft& draft, const OperatorChoice& chosen, int robot, Window allowed,
+Mutation moved(Random& random, const Draft& draft, const OperatorChoice& chosen, int robot, Stretch allowed,
                Draft& mutant) {
   Mutation mutation;
   mutant = draft;
@@ -120,7 +120,7 @@ Mutation reassign(const Problem& problem, Random& random, const Draft& draft, Dr
   if (chosen.task == Draft::kNobody) return {};
   const int robot = choose_robot(problem, random, chosen.task, chosen.robot);
   if (robot == Draft::kNobody) return {};
-  const Window allowed = window(problem, draft.route(robot), chosen.task);  // step 4
+  const Stretch allowed = stretch(problem, draft.route(robot), chosen.task);  // step 4
   return allowed.earliest > allowed.latest ? Mutation{} : moved(random, draft, chosen, robot, allowed, mutant);
 }
 
@@ -147,14 +147,14 @@ OperatorChoice choose_movable(const Problem& problem, Random& random, const Draf
 }
 
 // Step 4 over a scope: the latest of all lower bounds, the earliest of all upper ones.
-Window window_over(const Problem& problem, const Draft& draft, const OperatorChoice& chosen, int receiver,
-                   Bounds bounds) {
-  Window result{0, draft.length(receiver)};
+Stretch stretch_over(const Problem& problem, const Draft& draft, const OperatorChoice& chosen, int receiver,
+                     Bounds bounds) {
+  Stretch result{0, draft.length(receiver)};
   for (int robot = 0; robot < problem.robots(); ++robot) {
     if (bounds.scope == Scope::kReceiver && robot != receiver) continue;
     if (bounds.scope == Scope::kOthers && robot == chosen.robot) continue;
     const auto route = draft.route(robot);
-    const Window one = window(problem, route, chosen.task);
+    const Stretch one = stretch(problem, route, chosen.task);
     result.earliest = std::max(result.earliest, one.earliest);
     if (one.latest < static_cast<int>(route.size())) result.latest = std::min(result.latest, one.latest);
   }
@@ -169,7 +169,7 @@ Mutation reassign_within(const Problem& problem, Random& random, const Draft& dr
   if (chosen.task == Draft::kNobody) return {};
   const int robot = choose_robot(problem, random, chosen.task, chosen.robot);
   if (robot == Draft::kNobody) return {};
-  const Window allowed = window_over(problem, draft, chosen, robot, bounds);
+  const Stretch allowed = stretch_over(problem, draft, chosen, robot, bounds);
   return allowed.earliest > allowed.latest ? Mutation{} : moved(random, draft, chosen, robot, allowed, mutant);
 }
 

@@ -9,11 +9,11 @@
 namespace muster {
 
 // Where a task may stand in a route so that it comes after its prerequisites and before its dependants in that route.
-struct Window {
+struct Stretch {
   int earliest;
   int latest;
 };
-Window window(const Problem& problem, std::span<const int> route, int task);
+Stretch stretch(const Problem& problem, std::span<const int> route, int task);
 
 // A random admissible task allocation: tasks in random order, each after its prerequisites, at the end of the route of
 // a random robot that may do it and has capacity left. What fits nowhere is left out, and what depends on it.

@@ -210,13 +210,13 @@ void Placement::try_place(int robot, int task, int at) {
 }
 
 // Whether the robot, where it does a task's prerequisite or dependant too, can be at the later of the two as soon after
-// the earlier as the lag between them says.
+// the earlier as the gap between them says.
 bool Placement::in_reach(int robot, int task, int at) const {
-  if (!problem_.has_within()) return true;
+  if (!problem_.has_gap_most()) return true;
   const auto place_of = [&](int other) { return timeline_.place_of(other, robot); };
   const auto before = problem_.prerequisites(task);
   for (std::size_t k = 0; k < before.size(); ++k) {
-    const double within = problem_.within(task, static_cast<int>(k));
+    const double within = problem_.gap_most(task, static_cast<int>(k));
     const int from = within < kNever ? place_of(before[k]) : -1;
     if (from < 0 || from > at) continue;
     double takes = problem_.travel_time(robot, timeline_.stop(robot, at).place, task);
@@ -227,7 +227,7 @@ bool Placement::in_reach(int robot, int task, int at) const {
   }
   for (const int dependant : problem_.dependants(task)) {
     const auto own = problem_.prerequisites(dependant);
-    const double within = problem_.within(dependant, static_cast<int>(std::ranges::find(own, task) - own.begin()));
+    const double within = problem_.gap_most(dependant, static_cast<int>(std::ranges::find(own, task) - own.begin()));
     const int to = within < kNever ? place_of(dependant) : -1;
     if (to <= at) continue;
     double takes = problem_.travel_time(robot, task, timeline_.stop(robot, at + 1).place);

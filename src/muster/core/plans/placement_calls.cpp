@@ -14,7 +14,7 @@ constexpr int kMostJudged = 24;  // places with their calls, the most promising 
 // Whether what a task takes on board, or puts down, fits with all that comes after it.
 bool Placement::has_room(int robot, int task, int at) const {
   if (problem_.unloads_at_stations()) return true;  // which is judged with the calls
-  for (int c = 0; c < problem_.commodities(); ++c) {
+  for (int c = 0; c < problem_.meters(); ++c) {
     const double load = problem_.load(task, c);
     if (load > 0.0 && !problem_.carries(robot, c, std::max(0.0, roster_.highest_load(robot, at, c) + load)))
       return false;

@@ -122,8 +122,8 @@ bool Problem::find_symmetric() const {
 bool Problem::alike(int robot, int other) const {
   const auto same = [&](const auto& values) { return values.empty() || values[robot] == values[other]; };
   const auto same_loads = [&] {
-    for (int c = 0; c < data_.commodities; ++c) {
-      if (load_capacity(robot, c) != load_capacity(other, c) || load_at_start(robot, c) != load_at_start(other, c)) {
+    for (int c = 0; c < data_.meters; ++c) {
+      if (most_aboard(robot, c) != most_aboard(other, c) || load_at_start(robot, c) != load_at_start(other, c)) {
         return false;
       }
     }
@@ -131,24 +131,24 @@ bool Problem::alike(int robot, int other) const {
   };
   return same(data_.kind) && same(data_.work_class) && same(data_.time_class) && same(data_.travel_class) &&
          same(data_.place_class) && same(data_.speed) && same(data_.acceleration) && same(data_.climb) &&
-         same(data_.turn) && same(data_.waits) && same(data_.battery) && same(data_.battery_at_start) && same_loads();
+         same(data_.turn) && same(data_.waits) && same(data_.energy) && same(data_.energy_at_start) && same_loads();
 }
 
 void Problem::check_times() const {
   const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
   const auto fits = [](std::size_t size, std::size_t expected) { return size == 0 || size == expected; };
-  require(fits(data_.windows.size(), tasks) && fits(data_.deadline.size(), tasks) && fits(data_.due.size(), tasks) &&
+  require(fits(data_.openings.size(), tasks) && fits(data_.ends_by.size(), tasks) && fits(data_.due.size(), tasks) &&
               fits(data_.unit.size(), tasks) && fits(data_.parts.size(), tasks),
           "times of tasks need a value for each task");
-  require(fits(data_.available_until.size(), robots), "shifts need a value for each robot");
-  require(fits(data_.min_tasks.size(), robots), "least numbers of tasks need a value for each robot");
+  require(fits(data_.over_by.size(), robots), "ends of routes need a value for each robot");
+  require(fits(data_.least_stops.size(), robots), "least numbers of tasks need a value for each robot");
   const std::size_t edges = data_.prerequisites.values.size();
-  require(fits(data_.after.size(), edges) && fits(data_.within.size(), edges),
-          "lags need a value for each prerequisite");
+  require(fits(data_.gap_least.size(), edges) && fits(data_.gap_most.size(), edges),
+          "gaps need a value for each prerequisite");
   const std::size_t abilities = tasks ? data_.needs.size() / tasks : 0;
   require(data_.needs.size() == abilities * tasks && data_.abilities.size() == abilities * robots,
           "abilities have the wrong size");
-  for (const Rows* relation : {&data_.same_robot, &data_.other_robot}) {
+  for (const Rows* relation : {&data_.same_crew, &data_.apart}) {
     require(fits(relation->values.empty() ? 0 : static_cast<std::size_t>(relation->size()), tasks) &&
                 std::ranges::all_of(relation->values, [&](int j) { return 0 <= j && j < tasks_; }),
             "relations need a row for each task");
@@ -169,18 +169,17 @@ void Problem::check_times() const {
 
 void Problem::check_goods() const {
   const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
-  const auto commodities = static_cast<std::size_t>(data_.commodities);
-  require(data_.load.size() == tasks * commodities && data_.pending.size() == tasks * commodities &&
-              data_.load_capacity.size() == robots * commodities &&
-              data_.load_at_start.size() == robots * commodities &&
-              (data_.pending_at_start.empty() || data_.pending_at_start.size() == robots * commodities),
-          "loads need a value for each commodity");
+  const auto meters = static_cast<std::size_t>(data_.meters);
+  require(data_.load.size() == tasks * meters && data_.pending.size() == tasks * meters &&
+              data_.most_aboard.size() == robots * meters && data_.load_at_start.size() == robots * meters &&
+              (data_.pending_at_start.empty() || data_.pending_at_start.size() == robots * meters),
+          "loads need a value for each meter");
   require(data_.pickup.empty() ||
               (data_.pickup.size() == tasks && std::ranges::all_of(data_.pickup, [&](int j) { return j < tasks_; })),
           "deliveries need a task for each task");
-  require(data_.battery.size() == data_.battery_at_start.size() &&
-              (data_.battery.empty() || data_.battery.size() == robots),
-          "batteries need a value for each robot");
+  require(
+      data_.energy.size() == data_.energy_at_start.size() && (data_.energy.empty() || data_.energy.size() == robots),
+      "energies need a value for each robot");
 }
 
 void Problem::find_transports() {
@@ -255,24 +254,24 @@ std::vector<int> Problem::in_order(std::vector<int> units) const {
 
 void Problem::find_who_may_run_short() {
   may_run_short_.assign(robots_, 0);
-  unloads_at_stations_ = data_.commodities > 0 &&
-                         std::ranges::any_of(data_.stations, [](const Station& station) { return station.unloads; });
+  unloads_at_stations_ =
+      data_.meters > 0 && std::ranges::any_of(data_.stations, [](const Station& station) { return station.unloads; });
   for (int robot = 0; robot < robots_; ++robot) {
-    may_run_short_[robot] = unloads_at_stations_ || battery(robot) < kInfinity;
+    may_run_short_[robot] = unloads_at_stations_ || energy(robot) < kInfinity;
     any_may_run_short_ |= may_run_short_[robot] != 0;
   }
-  const auto batteries = std::ranges::count_if(data_.battery, [](double size) { return size < kInfinity; });
+  const auto energies = std::ranges::count_if(data_.energy, [](double size) { return size < kInfinity; });
   has_queues_ = std::ranges::any_of(
-      data_.stations, [&](const Station& station) { return station.gives_energy() && station.slots < batteries; });
+      data_.stations, [&](const Station& station) { return station.gives_energy() && station.slots < energies; });
 }
 
 void Problem::find_twins() {
   std::map<std::vector<double>, std::vector<int>> firsts;  // by what is quick to compare
   twins_.resize(robots_);
   for (int robot = 0; robot < robots_; ++robot) {
-    std::vector<double> key{capacity(robot), available_from(robot), available_until(robot)};
-    key.insert(key.end(),
-               {must_end(robot) ? 1.0 : 0.0, static_cast<double>(fixed(robot)), static_cast<double>(min_tasks(robot))});
+    std::vector<double> key{capacity(robot), available_from(robot), over_by(robot)};
+    key.insert(key.end(), {must_end(robot) ? 1.0 : 0.0, static_cast<double>(fixed(robot)),
+                           static_cast<double>(least_stops(robot))});
     for (int axis = 0; axis < 3; ++axis) key.insert(key.end(), {entry(start(robot), axis), entry(end(robot), axis)});
     for (const double able : ability(robot)) key.push_back(able);
     auto& among = firsts[key];
@@ -329,9 +328,9 @@ void Problem::find_units() {
     tasks_of_unit_.values.insert(tasks_of_unit_.values.end(), row.begin(), row.end());
     tasks_of_unit_.first.push_back(static_cast<int>(tasks_of_unit_.values.size()));
   }
-  timed_ = has_time_limits() || !data_.after.empty() || !data_.within.empty() || !data_.unit.empty() ||
-           !data_.parts.empty() || !data_.needs.empty() || !data_.same_robot.values.empty() ||
-           !data_.other_robot.values.empty() || has_min_tasks() || data_.commodities > 0 || !data_.battery.empty() ||
+  timed_ = has_time_limits() || !data_.gap_least.empty() || !data_.gap_most.empty() || !data_.unit.empty() ||
+           !data_.parts.empty() || !data_.needs.empty() || !data_.same_crew.values.empty() ||
+           !data_.apart.values.empty() || has_least_stops() || data_.meters > 0 || !data_.energy.empty() ||
            data_.objective == Objective::lateness ||
            (data_.makespan_includes_return && data_.objective == Objective::makespan);
 }

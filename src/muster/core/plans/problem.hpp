@@ -21,7 +21,7 @@ struct Rows {
   int size() const { return static_cast<int>(first.size()) - 1; }
 };
 
-struct TimeWindow {
+struct Opening {
   double open;
   double close;
 };
@@ -32,15 +32,15 @@ struct TeamPart {
   std::vector<char> allowed;  // by kind
 };
 
-// A place where robots charge, swap batteries or unload.
+// A place where robots take up energy, by and by or at once (a swap), or unload.
 struct Station {
-  double charge = 0.0;   // of usage, by second; 0: nobody charges here
+  double refill = 0.0;   // of usage, by second; 0: none is taken up by and by
   double swap_s = -1.0;  // how long a swap takes; below 0: nobody swaps here
   bool unloads = false;
-  bool partial = true;  // whether a charge may end before the battery is full
+  bool partial = true;  // whether a refill may end before all is full
   int slots = 1;
 
-  bool gives_energy() const { return charge > 0.0 || swap_s >= 0.0; }
+  bool gives_energy() const { return refill > 0.0 || swap_s >= 0.0; }
 };
 
 // Everything a Problem is made from. Places are the tasks, the robots' starts, the robots' ends, then the stations.
@@ -70,28 +70,28 @@ struct ProblemData {
   std::vector<double> table;
   std::vector<int> travel_class;
   // Times, teams and relations; what is empty, no task or robot has.
-  std::vector<std::vector<TimeWindow>> windows;  // by task, sorted
-  std::vector<double> deadline, due;             // by task; inf: none
-  std::vector<double> available_until;           // by robot; inf: without end
-  std::vector<int> min_tasks;                    // by robot: the least number of tasks of a route that has any
-  std::vector<double> after, within;             // lags, parallel to prerequisites.values; 0 and inf: none
-  std::vector<int> unit;                         // by task: its number of a node; tasks that start together share it
-  std::vector<std::vector<TeamPart>> parts;      // by task
-  std::vector<double> abilities, needs;          // robots x A, tasks x A
-  Rows same_robot, other_robot;                  // symmetric
-  std::vector<double> acceleration, climb;       // by robot; inf: no limit
-  std::vector<double> turn;                      // by robot: seconds of the turn with which a leg begins
-  bool over_map = false;                         // what is longer than the straight way has bends
+  std::vector<std::vector<Opening>> openings;  // by task, sorted
+  std::vector<double> ends_by, due;            // by task; inf: none
+  std::vector<double> over_by;                 // by robot; inf: without end
+  std::vector<int> least_stops;                // by robot: the least number of tasks of a route that has any
+  std::vector<double> gap_least, gap_most;     // gaps, parallel to prerequisites.values; 0 and inf: none
+  std::vector<int> unit;                       // by task: its number of a node; tasks that start together share it
+  std::vector<std::vector<TeamPart>> parts;    // by task
+  std::vector<double> abilities, needs;        // robots x A, tasks x A
+  Rows same_crew, apart;                       // symmetric
+  std::vector<double> acceleration, climb;     // by robot; inf: no limit
+  std::vector<double> turn;                    // by robot: seconds of the turn with which a leg begins
+  bool over_map = false;                       // what is longer than the straight way has bends
   bool makespan_includes_return = false;
-  // Goods: what a task adds to the load, and how much of that another task delivers (tasks x commodities); the task
-  // that takes on what a task delivers, -1: it delivers nothing; robots x commodities.
-  int commodities = 0;
+  // Goods: what a task adds to the load, and how much of that another task delivers (tasks x meters); the task
+  // that takes on what a task delivers, -1: it delivers nothing; robots x meters.
+  int meters = 0;
   std::vector<double> load, pending;
   std::vector<int> pickup;
-  std::vector<double> load_capacity, load_at_start;
+  std::vector<double> most_aboard, load_at_start;
   std::vector<double> pending_at_start;  // what of the load at first tasks deliver; empty: nothing
-  // Energy: above what a battery must keep; inf: without a battery. By robot.
-  std::vector<double> battery, battery_at_start;
+  // Energy: above what a energy must keep; inf: without a limit of energy. By robot.
+  std::vector<double> energy, energy_at_start;
   std::vector<Station> stations;
   // What is waited for others on the way between two places (places x places, seconds), by robots that share lanes;
   // empty: nothing.
@@ -132,49 +132,47 @@ class Problem {
   // Whether anything binds tasks to times, teams, relations or whole routes: routes with one task each do not tell all
   // then.
   bool is_timed() const { return timed_; }
-  bool has_windows() const { return !data_.windows.empty(); }
-  // Whether work or routes must be over by a time: windows, deadlines, shifts.
-  bool has_time_limits() const { return has_windows() || !data_.deadline.empty() || !data_.available_until.empty(); }
-  double deadline(int task) const { return data_.deadline.empty() ? kInfinity : data_.deadline[task]; }
+  bool has_openings() const { return !data_.openings.empty(); }
+  // Whether work or routes must be over by a time: openings, latest ends, ends of routes.
+  bool has_time_limits() const { return has_openings() || !data_.ends_by.empty() || !data_.over_by.empty(); }
+  double ends_by(int task) const { return data_.ends_by.empty() ? kInfinity : data_.ends_by[task]; }
   double due(int task) const { return data_.due.empty() ? kInfinity : data_.due[task]; }
-  double available_until(int robot) const {
-    return data_.available_until.empty() ? kInfinity : data_.available_until[robot];
-  }
-  bool has_min_tasks() const { return !data_.min_tasks.empty(); }
-  int min_tasks(int robot) const { return data_.min_tasks.empty() ? 0 : data_.min_tasks[robot]; }
+  double over_by(int robot) const { return data_.over_by.empty() ? kInfinity : data_.over_by[robot]; }
+  bool has_least_stops() const { return !data_.least_stops.empty(); }
+  int least_stops(int robot) const { return data_.least_stops.empty() ? 0 : data_.least_stops[robot]; }
   // Of a task's prerequisite number k: the least and the most time between its end and the task's begin.
-  double after(int task, int k) const {
-    return data_.after.empty() ? 0.0 : data_.after[data_.prerequisites.first[task] + k];
+  double gap_least(int task, int k) const {
+    return data_.gap_least.empty() ? 0.0 : data_.gap_least[data_.prerequisites.first[task] + k];
   }
-  double within(int task, int k) const {
-    return data_.within.empty() ? kInfinity : data_.within[data_.prerequisites.first[task] + k];
+  double gap_most(int task, int k) const {
+    return data_.gap_most.empty() ? kInfinity : data_.gap_most[data_.prerequisites.first[task] + k];
   }
-  bool has_within() const { return !data_.within.empty(); }
+  bool has_gap_most() const { return !data_.gap_most.empty(); }
   int units() const { return tasks_of_unit_.size(); }
   int unit(int task) const { return data_.unit.empty() ? task : data_.unit[task]; }
   std::span<const int> tasks_of_unit(int unit) const { return tasks_of_unit_[unit]; }
   // The first time from `earliest` on at which work may begin; inf if none is left.
   double next_begin(int task, double earliest) const {
-    if (data_.windows.empty() || data_.windows[task].empty()) return earliest;
-    for (const TimeWindow& window : data_.windows[task]) {
-      if (earliest <= window.close) return earliest < window.open ? window.open : earliest;
+    if (data_.openings.empty() || data_.openings[task].empty()) return earliest;
+    for (const Opening& opening : data_.openings[task]) {
+      if (earliest <= opening.close) return earliest < opening.open ? opening.open : earliest;
     }
     return kInfinity;
   }
   // The last time up to `latest` at which work may begin; -inf if none is.
   double last_begin(int task, double latest) const {
-    if (data_.windows.empty() || data_.windows[task].empty()) return latest;
-    const auto& windows = data_.windows[task];
-    for (auto window = windows.rbegin(); window != windows.rend(); ++window) {
-      if (latest >= window->open) return latest < window->close ? latest : window->close;
+    if (data_.openings.empty() || data_.openings[task].empty()) return latest;
+    const auto& openings = data_.openings[task];
+    for (auto opening = openings.rbegin(); opening != openings.rend(); ++opening) {
+      if (latest >= opening->open) return latest < opening->close ? latest : opening->close;
     }
     return -kInfinity;
   }
-  // The end of the window in which work begins at this time.
-  double last_begin_of_window(int task, double begin) const {
-    if (data_.windows.empty() || data_.windows[task].empty()) return kInfinity;
-    for (const TimeWindow& window : data_.windows[task]) {
-      if (begin <= window.close) return window.close;
+  // The end of the opening in which work begins at this time.
+  double last_begin_of_opening(int task, double begin) const {
+    if (data_.openings.empty() || data_.openings[task].empty()) return kInfinity;
+    for (const Opening& opening : data_.openings[task]) {
+      if (begin <= opening.close) return opening.close;
     }
     return kInfinity;
   }
@@ -194,28 +192,28 @@ class Problem {
     return {data_.needs.data() + static_cast<std::size_t>(task) * abilities(), static_cast<std::size_t>(abilities())};
   }
   int kind(int robot) const { return data_.kind[robot]; }
-  std::span<const int> same_robot(int task) const {
-    if (data_.same_robot.size() == 0) return {};
-    return data_.same_robot[task];
+  std::span<const int> same_crew(int task) const {
+    if (data_.same_crew.size() == 0) return {};
+    return data_.same_crew[task];
   }
-  std::span<const int> other_robot(int task) const {
-    if (data_.other_robot.size() == 0) return {};
-    return data_.other_robot[task];
+  std::span<const int> apart(int task) const {
+    if (data_.apart.size() == 0) return {};
+    return data_.apart[task];
   }
   bool makespan_includes_return() const { return data_.makespan_includes_return; }
 
-  int commodities() const { return data_.commodities; }
+  int meters() const { return data_.meters; }
   // What a task adds to the load of a robot, and what of that another task delivers: below 0 where it is the one.
-  double load(int task, int commodity) const { return data_.load[at(task, commodity)]; }
-  double pending(int task, int commodity) const { return data_.pending[at(task, commodity)]; }
-  double load_capacity(int robot, int commodity) const { return data_.load_capacity[at(robot, commodity)]; }
-  double load_at_start(int robot, int commodity) const { return data_.load_at_start[at(robot, commodity)]; }
-  double pending_at_start(int robot, int commodity) const {
-    return data_.pending_at_start.empty() ? 0.0 : data_.pending_at_start[at(robot, commodity)];
+  double load(int task, int meter) const { return data_.load[at(task, meter)]; }
+  double pending(int task, int meter) const { return data_.pending[at(task, meter)]; }
+  double most_aboard(int robot, int meter) const { return data_.most_aboard[at(robot, meter)]; }
+  double load_at_start(int robot, int meter) const { return data_.load_at_start[at(robot, meter)]; }
+  double pending_at_start(int robot, int meter) const {
+    return data_.pending_at_start.empty() ? 0.0 : data_.pending_at_start[at(robot, meter)];
   }
   // Whether a robot can have so much on board.
-  bool carries(int robot, int commodity, double load) const {
-    const double most = load_capacity(robot, commodity), rounding = 1e-12 * (most < kInfinity ? 1.0 + most : 1.0);
+  bool carries(int robot, int meter, double load) const {
+    const double most = most_aboard(robot, meter), rounding = 1e-12 * (most < kInfinity ? 1.0 + most : 1.0);
     return load >= -rounding && load <= most + rounding;
   }
   bool has_deliveries() const { return !data_.pickup.empty(); }
@@ -231,9 +229,9 @@ class Problem {
   int stations() const { return static_cast<int>(data_.stations.size()); }
   const Station& station(int number) const { return data_.stations[number]; }
   int place_of_station(int number) const { return tasks_ + 2 * robots_ + number; }
-  // What a battery can hold, and holds at first, above its reserve; inf: without a battery.
-  double battery(int robot) const { return data_.battery.empty() ? kInfinity : data_.battery[robot]; }
-  double battery_at_start(int robot) const { return data_.battery.empty() ? kInfinity : data_.battery_at_start[robot]; }
+  // What a energy can hold, and holds at first, above its reserve; inf: without a limit of energy.
+  double energy(int robot) const { return data_.energy.empty() ? kInfinity : data_.energy[robot]; }
+  double energy_at_start(int robot) const { return data_.energy.empty() ? kInfinity : data_.energy_at_start[robot]; }
   // Whether robots can put down goods at a station.
   bool unloads_at_stations() const { return unloads_at_stations_; }
   // Whether the robot may have to call at stations, or can run out of energy.
@@ -321,7 +319,7 @@ class Problem {
   bool same_ends(int robot, int other) const;
   void find_who_may_run_short();
   void check_goods() const;
-  std::size_t at(int row, int commodity) const { return static_cast<std::size_t>(row) * data_.commodities + commodity; }
+  std::size_t at(int row, int meter) const { return static_cast<std::size_t>(row) * data_.meters + meter; }
   bool find_symmetric() const;
   void check_times() const;
   double leg_seconds(int robot, int from, int to, double metres) const;

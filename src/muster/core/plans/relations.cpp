@@ -22,10 +22,10 @@ void Relations::look_at(int unit, const std::vector<char>* robots) {
     for (int robot = 0; robots && robot < problem_.robots(); ++robot) {
       if (!(*robots)[robot]) exclude(k, robot);
     }
-    for (const int other : problem_.other_robot(tasks[k])) {
+    for (const int other : problem_.apart(tasks[k])) {
       for (const int robot : roster_.team_of(other)) exclude(k, robot);
     }
-    for (const int other : problem_.same_robot(tasks[k])) {
+    for (const int other : problem_.same_crew(tasks[k])) {
       if (roster_.present(problem_.unit(other))) {
         keep_to(k, roster_.team_of(other));
       } else {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "plans/draft.hpp"
-#include "random.hpp"
 #include "plans/station_calls.hpp"
 #include "plans/timeline.hpp"
+#include "random.hpp"
 
 namespace muster {
 
@@ -43,7 +43,7 @@ struct Trial {
 struct StopTimes {
   int place;  // a task or a station
   double arrive, begin, end;
-  double charged = 0.0;
+  double refilled = 0.0;
 };
 
 // Working routes of a timed problem on a Timeline, with the team of every task, usages and undo. Everything that
@@ -69,9 +69,9 @@ class Roster {
   double weight(int unit) const { return weight_[unit]; }
   double usage(int robot) const { return usage_[robot]; }
   // What a robot has on board after so many tasks; and the most and the least from there on.
-  double load(int robot, int at, int commodity) const { return loads_[robot][index(at, commodity)]; }
-  double highest_load(int robot, int at, int commodity) const { return highest_[robot][index(at, commodity)]; }
-  double lowest_load(int robot, int at, int commodity) const { return lowest_[robot][index(at, commodity)]; }
+  double load(int robot, int at, int meter) const { return loads_[robot][index(at, meter)]; }
+  double highest_load(int robot, int at, int meter) const { return highest_[robot][index(at, meter)]; }
+  double lowest_load(int robot, int at, int meter) const { return lowest_[robot][index(at, meter)]; }
   StationCalls* calls() { return calls_.get(); }
 
   // The team and the places at which an absent unit costs least; null where there are none. All that it waits for must
@@ -146,9 +146,7 @@ class Roster {
   double total() const;
   double lateness() const;
   double arrivals() const;
-  std::size_t index(int at, int commodity) const {
-    return static_cast<std::size_t>(at) * problem_.commodities() + commodity;
-  }
+  std::size_t index(int at, int meter) const { return static_cast<std::size_t>(at) * problem_.meters() + meter; }
 
   const Problem& problem_;
   Timeline timeline_;
@@ -165,7 +163,7 @@ class Roster {
   // Goods and energy.
   std::unique_ptr<StationCalls> calls_;                        // where any robot may run short
   std::vector<char> holds_;                                    // by robot, whether loads and energy last
-  std::vector<std::vector<double>> highest_, lowest_, loads_;  // by robot, of loads (stops, commodities) from a stop on
+  std::vector<std::vector<double>> highest_, lowest_, loads_;  // by robot, of loads (stops, meters) from a stop on
   std::vector<int> tasks_;
   std::unique_ptr<class Placement> placement_;
 };

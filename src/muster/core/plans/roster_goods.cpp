@@ -16,24 +16,24 @@ const std::vector<int>& Roster::tasks_of(int robot) {
 // The load after each stop, and the most and the least from there on. Where robots unload at stations, what is on board
 // depends on that, and `StationCalls` looks to it.
 bool Roster::measure_loads(int robot) {
-  const int commodities = problem_.commodities(), size = timeline_.tasks_in(robot);
-  if (commodities == 0) return true;
+  const int meters = problem_.meters(), size = timeline_.tasks_in(robot);
+  if (meters == 0) return true;
   auto &loads = loads_[robot], &highest = highest_[robot], &lowest = lowest_[robot];
-  loads.resize(static_cast<std::size_t>(size + 1) * commodities);
-  for (int c = 0; c < commodities; ++c) loads[index(0, c)] = problem_.load_at_start(robot, c);
+  loads.resize(static_cast<std::size_t>(size + 1) * meters);
+  for (int c = 0; c < meters; ++c) loads[index(0, c)] = problem_.load_at_start(robot, c);
   for (int at = 1; at <= size; ++at) {
     const int task = timeline_.stop(robot, at).place;
-    for (int c = 0; c < commodities; ++c) loads[index(at, c)] = loads[index(at - 1, c)] + problem_.load(task, c);
+    for (int c = 0; c < meters; ++c) loads[index(at, c)] = loads[index(at - 1, c)] + problem_.load(task, c);
   }
   highest = lowest = loads;
   for (int at = size - 1; at >= 0; --at) {
-    for (int c = 0; c < commodities; ++c) {
+    for (int c = 0; c < meters; ++c) {
       highest[index(at, c)] = std::max(highest[index(at, c)], highest[index(at + 1, c)]);
       lowest[index(at, c)] = std::min(lowest[index(at, c)], lowest[index(at + 1, c)]);
     }
   }
   if (problem_.unloads_at_stations()) return true;
-  for (int c = 0; c < commodities; ++c) {
+  for (int c = 0; c < meters; ++c) {
     if (!problem_.carries(robot, c, highest[index(0, c)]) || !problem_.carries(robot, c, lowest[index(0, c)]))
       return false;
   }
@@ -80,7 +80,7 @@ void Roster::add_calls(int robot, int at, std::vector<StopTimes>& stops) const {
     if (call.at != at - 1) continue;
     const int there = problem_.place_of_station(call.station);
     const double arrive = time + problem_.travel_time(robot, place, there), begin = arrive + call.waits_s;
-    stops.push_back({there, arrive, begin, begin + call.takes_s, call.charged});
+    stops.push_back({there, arrive, begin, begin + call.takes_s, call.refilled});
     time = begin + call.takes_s;
     place = there;
   }

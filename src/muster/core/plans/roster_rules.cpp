@@ -15,13 +15,13 @@ constexpr double kFills = 0.45, kMoves = 0.9;  // shares of the ways to mend a s
 // How many tasks a robot that does some lacks; 0: it does enough, or none.
 int lack(const Roster& roster, int robot) {
   const int tasks = roster.timeline().tasks_in(robot);
-  return tasks == 0 ? 0 : std::max(0, roster.problem().min_tasks(robot) - tasks);
+  return tasks == 0 ? 0 : std::max(0, roster.problem().least_stops(robot) - tasks);
 }
 
 // The robot that lacks most tasks; none: all do enough, or none.
 std::optional<int> shortest_route(const Roster& roster) {
   int found = 0;
-  if (!roster.problem().has_min_tasks()) return std::nullopt;
+  if (!roster.problem().has_least_stops()) return std::nullopt;
   for (int robot = 1; robot < roster.problem().robots(); ++robot) {
     if (lack(roster, robot) > lack(roster, found)) found = robot;
   }
@@ -33,7 +33,7 @@ class ShortRoutes {
  public:
   ShortRoutes(Roster& roster, const Trial& trial)
       : roster_(roster), problem_(roster.problem()), random_(trial.random), elsewhere_(trial) {
-    if (!problem_.has_min_tasks()) return;
+    if (!problem_.has_least_stops()) return;
     open_.assign(problem_.robots(), 1);
     fills_ = problem_.robots();
     elsewhere_.robots = &open_;
@@ -105,10 +105,10 @@ class ShortRoutes {
   bool may_leave(int unit, int robot) const {
     if (!roster_.present(unit) || roster_.fixed(unit)) return false;
     const auto visits = roster_.timeline().visits_of(unit);
-    if (visits.size() != 1 || !problem_.same_robot(problem_.tasks_of_unit(unit).front()).empty()) return false;
+    if (visits.size() != 1 || !problem_.same_crew(problem_.tasks_of_unit(unit).front()).empty()) return false;
     const Visit& visit = roster_.timeline().visit(visits.front());
     const int owner = visit.robot, left = roster_.timeline().tasks_in(owner) - 1;
-    const bool enough = lack(roster_, owner) > 0 || left == 0 || left >= problem_.min_tasks(owner);
+    const bool enough = lack(roster_, owner) > 0 || left == 0 || left >= problem_.least_stops(owner);
     return owner != robot && enough && (left == 0 || is_on_the_way(visit));
   }
 
@@ -189,10 +189,10 @@ bool Roster::has_rightful_team(int task, TeamChoice& choice) const {
     if (problem_.delivers(task) && !comes_after(task, other)) return false;
   }
   if (!std::ranges::all_of(team, [&](int robot) { return problem_.allowed(robot, task); })) return false;
-  for (const int other : problem_.same_robot(task)) {
+  for (const int other : problem_.same_crew(task)) {
     if (present(problem_.unit(other)) && team_of(other) != team) return false;
   }
-  return std::ranges::none_of(problem_.other_robot(task), [&](int other) {
+  return std::ranges::none_of(problem_.apart(task), [&](int other) {
     std::vector<int> common;
     std::ranges::set_intersection(team, team_of(other), std::back_inserter(common));
     return !common.empty();

@@ -98,7 +98,7 @@ void ScheduleSearch::take(int unit) {
 void ScheduleSearch::take_tied() {
   for (std::size_t k = 0; k < removed_.size(); ++k) {
     for (const int task : problem_.tasks_of_unit(removed_[k])) {
-      for (const int other : problem_.same_robot(task)) {
+      for (const int other : problem_.same_crew(task)) {
         if (roster_.present(problem_.unit(other))) take(problem_.unit(other));
       }
     }

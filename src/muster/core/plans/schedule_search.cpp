@@ -74,7 +74,7 @@ void ScheduleSearch::fill() {
   std::ranges::sort(units);
   std::ranges::stable_sort(units, {}, [&](int unit) {
     const int task = problem_.tasks_of_unit(unit).front();
-    return problem_.last_begin(task, problem_.deadline(task));
+    return problem_.last_begin(task, problem_.ends_by(task));
   });
   for (bool more = true; more;) {
     more = false;
@@ -210,7 +210,7 @@ void ScheduleSearch::order_pending() {
       case 7:  // when it began last
         return roster_.timeline().begin_of(unit);
       case 8:  // the latest begin
-        return problem_.last_begin(task, problem_.deadline(task));
+        return problem_.last_begin(task, problem_.ends_by(task));
       default:  // how long the mission goes on after it
         return sees_end_ ? -roster_.timeline().tail_of(unit) : problem_.next_begin(task, 0.0);
     }

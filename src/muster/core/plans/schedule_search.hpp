@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "plans/neighbours.hpp"
-#include "random.hpp"
 #include "plans/roster.hpp"
 #include "plans/search.hpp"
+#include "random.hpp"
 
 namespace muster {
 

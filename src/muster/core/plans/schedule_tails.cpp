@@ -66,8 +66,8 @@ bool ScheduleSearch::is_tail(int robot, int at, int other) const {
   for (int k = at + 1; k <= timeline.tasks_in(robot); ++k) {
     const Visit& visit = timeline.stop(robot, k);
     if (problem_.tasks_of_unit(visit.unit).size() != 1 || timeline.visits_of(visit.unit).size() != 1) return false;
-    if (!problem_.allowed(other, visit.place) || !problem_.same_robot(visit.place).empty() ||
-        !problem_.other_robot(visit.place).empty() || !does_alone(other, visit.place))
+    if (!problem_.allowed(other, visit.place) || !problem_.same_crew(visit.place).empty() ||
+        !problem_.apart(visit.place).empty() || !does_alone(other, visit.place))
       return false;
     const auto in_tail = [&](int unit) {
       return std::ranges::all_of(timeline.visits_of(unit), [&](int number) {

@@ -210,20 +210,20 @@ int Search::any_of(const std::vector<int>& tasks) { return tasks[random_.below(s
 void Search::take_string(int task, int length) {
   constexpr int kLongestGap = 4;
   const int around = length + kLongestGap;
-  window_.clear();
-  for (int each = task; team_.is_task(each) && !team_.fixed(each) && static_cast<int>(window_.size()) < around;
+  string_.clear();
+  for (int each = task; team_.is_task(each) && !team_.fixed(each) && static_cast<int>(string_.size()) < around;
        each = team_.prev(each)) {
-    window_.push_back(each);
+    string_.push_back(each);
   }
-  std::ranges::reverse(window_);
-  const int at = static_cast<int>(window_.size()) - 1;
-  for (int each = team_.next(task); team_.is_task(each) && static_cast<int>(window_.size()) < at + around;
+  std::ranges::reverse(string_);
+  const int at = static_cast<int>(string_.size()) - 1;
+  for (int each = team_.next(task); team_.is_task(each) && static_cast<int>(string_.size()) < at + around;
        each = team_.next(each)) {
-    window_.push_back(each);
+    string_.push_back(each);
   }
-  for (const int each : window_) spared_[each] = ruin_stamp_;
-  string_around(at, length, 0, static_cast<int>(window_.size()), random_, [&](int k) {
-    const int each = window_[k];
+  for (const int each : string_) spared_[each] = ruin_stamp_;
+  string_around(at, length, 0, static_cast<int>(string_.size()), random_, [&](int k) {
+    const int each = string_[k];
     gaps_.push_back(team_.prev(each));
     gaps_.push_back(team_.next(each));
     team_.remove(each);

@@ -7,9 +7,9 @@
 #include "plans/draft.hpp"
 #include "plans/local_search.hpp"
 #include "plans/neighbours.hpp"
-#include "random.hpp"
 #include "plans/team.hpp"
 #include "plans/team_cost.hpp"
+#include "random.hpp"
 
 namespace muster {
 
@@ -86,7 +86,7 @@ class Search {
   int seed_ = 0;       // the task that a ruin begins at
   bool seed_left_out_ = false;
   std::vector<int> ruined_;  // robots
-  std::vector<int> window_;  // places of a route around a task that a string is taken from
+  std::vector<int> string_;  // places of a route around a task that a string is taken from
   std::vector<int> gaps_;    // places beside which tasks were taken out
   int ruin_stamp_ = 0;
   std::vector<int> spared_;             // by task: the ruin that leaves it, beside a string

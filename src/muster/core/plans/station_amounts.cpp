@@ -16,7 +16,7 @@ constexpr double kAmountRounding = 1e-12;
 // Goes back from the last label: how much energy the robot needs where it leaves a station, and by when.
 void StationCalls::trace(int robot, Route& route, int best, std::span<const double> works) {
   const Labels& labels = route.labels;
-  const bool drains = problem_.battery(robot) < kNever;
+  const bool drains = problem_.energy(robot) < kNever;
   int position = static_cast<int>(labels.at_stop.size()) - 1;  // of the stop that the label is at, or goes to
   const int size = static_cast<int>(route.tasks.size());
   const auto place_of_stop = [&](int k) {
@@ -36,19 +36,19 @@ void StationCalls::trace(int robot, Route& route, int best, std::span<const doub
     const double way = drains ? problem_.travel_usage(robot, from, to) : 0.0;
     const double seconds = problem_.travel_time(robot, from, to);
     Frontier arrival = parent.frontier;
-    arrival.shift(seconds, way);
-    if (drains) arrival.keep_from(-kAmountRounding * problem_.battery(robot));
+    arrival.advance(seconds, way);
+    if (drains) arrival.keep_from(-kAmountRounding * problem_.energy(robot));
     if (label.station >= 0) {
       const Station& station = problem_.station(label.station);
       left.push_back({{position, label.station, 0.0, 0.0, 0.0}, target.energy});
-      if (drains && station.charge > 0.0 && station.partial) {
-        const Frontier::Point corner = arrival.corner(station.charge);
+      if (drains && station.refill > 0.0 && station.partial) {
+        const Frontier::Point corner = arrival.corner(station.refill);
         if (target.time >= corner.time) target = corner;
-      } else if (drains && station.charge > 0.0) {
-        left.back().level = problem_.battery(robot);
-        target = arrival.corner(station.charge);
+      } else if (drains && station.refill > 0.0) {
+        left.back().level = problem_.energy(robot);
+        target = arrival.corner(station.refill);
       } else if (drains && station.swap_s >= 0.0) {
-        left.back().level = problem_.battery(robot);
+        left.back().level = problem_.energy(robot);
         target = arrival.first();
       }
     } else {
@@ -63,7 +63,7 @@ void StationCalls::trace(int robot, Route& route, int best, std::span<const doub
     target.time -= seconds;
     target.energy += way;
     if (parent.station < 0 && position == size && ends_before_return(robot)) {
-      // What is charged on the way to the end makes nothing later.
+      // What is refilled on the way to the end makes nothing later.
       const double needed = drains ? needed_after_work(robot, labels, labels.all[best].parent) : 0.0;
       target.time = parent.frontier.time_of(needed);
       target.energy = std::max(needed, parent.frontier.energy_at(target.time));
@@ -71,7 +71,7 @@ void StationCalls::trace(int robot, Route& route, int best, std::span<const doub
   }
   std::ranges::reverse(left);
   // Forward again, as a level may be above what is needed.
-  double level = drains ? problem_.battery_at_start(robot) : 0.0;
+  double level = drains ? problem_.energy_at_start(robot) : 0.0;
   std::size_t next = 0;
   int place = problem_.start(robot);
   for (int k = 0; k <= size; ++k) {
@@ -81,12 +81,12 @@ void StationCalls::trace(int robot, Route& route, int best, std::span<const doub
       const int there = problem_.place_of_station(call.station);
       if (drains) level -= problem_.travel_usage(robot, place, there);
       if (drains && station.gives_energy()) {
-        const double full = problem_.battery(robot);
+        const double full = problem_.energy(robot);
         double to_level = std::min(full, left[next].level);
         if (full - to_level < 1e-9 * full) to_level = full;
-        call.charged = std::max(0.0, to_level - level);
-        call.takes_s = station.swap_s >= 0.0 ? station.swap_s : call.charged / station.charge;
-        level += call.charged;
+        call.refilled = std::max(0.0, to_level - level);
+        call.takes_s = station.swap_s >= 0.0 ? station.swap_s : call.refilled / station.refill;
+        level += call.refilled;
       }
       route.calls.push_back(call);
       place = there;

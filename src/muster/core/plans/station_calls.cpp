@@ -115,13 +115,13 @@ double StationCalls::latest_begin(int robot, int at, std::span<const double> wor
   if (own.latest.empty()) {
     const int size = static_cast<int>(own.tasks.size());
     own.latest.resize(size + 1);
-    own.latest[size] = problem_.available_until(robot);
+    own.latest[size] = problem_.over_by(robot);
     for (int k = size - 1; k >= 0; --k) {
       const int task = own.tasks[k];
       const bool goes_on = k + 1 < size || problem_.must_end(robot);
       const int next = k + 1 < size ? own.tasks[k + 1] : problem_.end(robot);
       const double in = goes_on ? problem_.travel_time(robot, task, next) : 0.0;
-      const double latest = std::min(problem_.deadline(task), own.latest[k + 1] - in) - works[task];
+      const double latest = std::min(problem_.ends_by(task), own.latest[k + 1] - in) - works[task];
       own.latest[k] = problem_.last_begin(task, latest);
     }
   }
@@ -140,12 +140,12 @@ void StationCalls::label(int robot) {
 
 void StationCalls::begin(int robot, Labels& labels) {
   labels.clear();
-  const double energy = problem_.battery(robot) < kNever ? problem_.battery_at_start(robot) : 0.0;
+  const double energy = problem_.energy(robot) < kNever ? problem_.energy_at_start(robot) : 0.0;
   labels.all.push_back({0.0, Frontier(problem_.available_from(robot), energy), -1, -1, -1});
   labels.at_stop.emplace_back(0, 1);
   labels.spare.push_back(kNever);
   if (!unloads_) return;
-  for (int c = 0; c < problem_.commodities(); ++c) {
+  for (int c = 0; c < problem_.meters(); ++c) {
     labels.loads.push_back(problem_.load_at_start(robot, c));
     labels.pending.push_back(problem_.pending_at_start(robot, c));
   }
@@ -164,7 +164,7 @@ void StationCalls::copy_labels(const Labels& labels, int stop) {
   tried_.at_stop.assign(stop + 1, {0, last - first});
   tried_.spare.assign(stop + 1, labels.spare[stop]);
   if (!unloads_) return;
-  const auto kept = static_cast<std::ptrdiff_t>(stop + 1) * problem_.commodities();
+  const auto kept = static_cast<std::ptrdiff_t>(stop + 1) * problem_.meters();
   tried_.loads.assign(labels.loads.begin(), labels.loads.begin() + kept);
   tried_.pending.assign(labels.pending.begin(), labels.pending.begin() + kept);
 }
@@ -177,11 +177,11 @@ Called StationCalls::run(int robot, Labels& labels, std::span<const int> rest, s
   int from = problem_.start(robot);
   if (stop > 0) from = &labels == &tried_ ? routes_[robot].tasks[stop - 1] : from;
   measure_rest(robot, from, rest, works);
-  if (problem_.has_within()) measure_lags(robot, stop, rest, works);
+  if (problem_.has_gap_most()) measure_gaps(robot, stop, rest, works);
   spare_ = labels.spare.back();
   for (std::size_t k = 0; k < rest.size(); ++k) {
     if (unloads_) carry(robot, labels, rest[k]);
-    gap_limit_s_ = problem_.has_within() ? most_gap_s_[k] : kNever;
+    gap_limit_s_ = problem_.has_gap_most() ? most_gap_s_[k] : kNever;
     if (!cross(robot, labels, from, rest[k], rest_[k], rest_[k + 1])) return {kNever, kNever};
     from = rest[k];
   }
@@ -193,15 +193,14 @@ Called StationCalls::run(int robot, Labels& labels, std::span<const int> rest, s
   }
   const int best = best_of(robot, labels);
   const Label& last = labels.all[best];
-  if (moves && last.frontier.first().time > problem_.available_until(robot) * (1.0 + kCallRounding))
-    return {kNever, kNever};
+  if (moves && last.frontier.first().time > problem_.over_by(robot) * (1.0 + kCallRounding)) return {kNever, kNever};
   const double end_s = ends_before_return(robot) && moves ? last.extra : last.frontier.first().time;
   return {last.usage, end_s, last.extra};
 }
 
 // How long the way to each task of the rest may take: a task that must begin shortly after an earlier one of the route
 // leaves little time for calls between the two.
-void StationCalls::measure_lags(int robot, int stop, std::span<const int> rest, std::span<const double> works) {
+void StationCalls::measure_gaps(int robot, int stop, std::span<const int> rest, std::span<const double> works) {
   std::vector<int> tasks(routes_[robot].tasks.begin(), routes_[robot].tasks.begin() + stop);
   tasks.insert(tasks.end(), rest.begin(), rest.end());
   offsets_.assign(tasks.size(), 0.0);  // when each would begin if the robot never waited or called
@@ -211,7 +210,7 @@ void StationCalls::measure_lags(int robot, int stop, std::span<const int> rest, 
   for (std::size_t k = 1; k < tasks.size(); ++k) {
     const auto before = problem_.prerequisites(tasks[k]);
     for (std::size_t b = 0; b < before.size(); ++b) {
-      const double within = problem_.within(tasks[k], static_cast<int>(b));
+      const double within = problem_.gap_most(tasks[k], static_cast<int>(b));
       const auto from = static_cast<std::size_t>(
           std::find(tasks.begin(), tasks.begin() + static_cast<std::ptrdiff_t>(k), before[b]) - tasks.begin());
       if (within == kNever || from == k) continue;
@@ -251,23 +250,22 @@ double StationCalls::work_usage(int robot, int task, std::span<const double> wor
 
 // What is on board after one more stop, as if the robot never unloaded.
 void StationCalls::carry(int, Labels& labels, int task) const {
-  const int commodities = problem_.commodities();
-  const std::size_t before = labels.loads.size() - commodities;
-  for (int c = 0; c < commodities; ++c) {
+  const int meters = problem_.meters();
+  const std::size_t before = labels.loads.size() - meters;
+  for (int c = 0; c < meters; ++c) {
     labels.loads.push_back(labels.loads[before + c] + problem_.load(task, c));
     labels.pending.push_back(labels.pending[before + c] + problem_.pending(task, c));
   }
 }
 
-// The best within the robot's capacity and shift, if any is.
+// The best within the limits of the robot, if any is.
 int StationCalls::best_of(int robot, const Labels& labels) const {
   const auto [first, last] = labels.at_stop.back();
   int best = first;
   const auto key = [&](int k) {
     const Label& label = labels.all[k];
     const double time = label.frontier.first().time;
-    const bool above =
-        !problem_.fits(robot, label.usage) || time > problem_.available_until(robot) * (1.0 + kCallRounding);
+    const bool above = !problem_.fits(robot, label.usage) || time > problem_.over_by(robot) * (1.0 + kCallRounding);
     return in_time_ ? std::tuple(above, label.extra, time, label.usage)
                     : std::tuple(above, label.extra, label.usage, time);
   };
@@ -277,10 +275,10 @@ int StationCalls::best_of(int robot, const Labels& labels) const {
   return best;
 }
 
-// Whether the objective counts no time after the last task, and the robot may charge then.
+// Whether the objective counts no time after the last task, and the robot may refill then.
 bool StationCalls::ends_before_return(int robot) const {
   return problem_.objective() == Objective::makespan && !problem_.makespan_includes_return() &&
-         problem_.must_end(robot) && problem_.available_until(robot) == kNever;
+         problem_.must_end(robot) && problem_.over_by(robot) == kNever;
 }
 
 // What a robot needs where it leaves its last task, to go on to its end by way of this label.
@@ -306,7 +304,7 @@ const Frontier& StationCalls::after_work(const Labels& labels, int last) {
 // --- Stations --------------------------------------------------------------------------------------------------------
 
 bool StationCalls::serves(int robot, const Station& station) const {
-  return (problem_.battery(robot) < kNever && station.gives_energy()) || (unloads_ && station.unloads);
+  return (problem_.energy(robot) < kNever && station.gives_energy()) || (unloads_ && station.unloads);
 }
 
 // The least usage from a place to a station with energy.
@@ -322,7 +320,7 @@ double StationCalls::least_onward(int robot, int from) const {
 // The stations between two places but those to and from which the ways are longer than by another of the same kind.
 std::span<const int> StationCalls::stations_between(int robot, int from, int to) {
   const auto places = static_cast<std::uint64_t>(problem_.place_of_station(problem_.stations()));
-  const bool energy = problem_.battery(robot) < kNever;
+  const bool energy = problem_.energy(robot) < kNever;
   const auto key =
       ((static_cast<std::uint64_t>(problem_.travel_class(robot)) * 2 + energy) * places + from) * places + to;
   if (between_.size() > kMostRemembered) between_.clear();
@@ -335,12 +333,12 @@ std::span<const int> StationCalls::stations_between(int robot, int from, int to)
   };
   const auto beats = [&](int a, int b) {
     const Station &one = problem_.station(a), &other = problem_.station(b);
-    const bool serves_as_well = one.charge >= other.charge && one.partial == other.partial &&
+    const bool serves_as_well = one.refill >= other.refill && one.partial == other.partial &&
                                 one.swap_s == other.swap_s && one.unloads == other.unloads && one.slots >= other.slots;
     const auto [in, out] = ways(a);
     const auto [in_other, out_other] = ways(b);
     if (!serves_as_well || in > in_other || out > out_other) return false;
-    return in < in_other || out < out_other || one.charge > other.charge || a < b;
+    return in < in_other || out < out_other || one.refill > other.refill || a < b;
   };
   for (int station = 0; station < problem_.stations(); ++station) {
     if (!serves(robot, problem_.station(station))) continue;

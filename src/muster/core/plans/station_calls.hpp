@@ -1,4 +1,4 @@
-// Where a robot calls at stations on its route: to charge, to swap its battery, to unload.
+// Where a robot calls at stations on its route: for energy, or to unload.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace muster {
 
 // A visit of a station on the way to a stop of a route.
 struct Call {
-  int at;          // before the task of this number in the route, or the end
-  int station;     // its number
-  double charged;  // in the unit of usage
-  double takes_s;  // of service
-  double waits_s;  // for a slot
+  int at;           // before the task of this number in the route, or the end
+  int station;      // its number
+  double refilled;  // in the unit of usage
+  double takes_s;   // of service
+  double waits_s;   // for a slot
 };
 
 // What a route comes to with its calls; usage is infinite where the robot runs short wherever it calls.
@@ -51,7 +51,7 @@ class StationCalls {
   Called with_task(int robot, int task, int at, std::span<const double> works);
   Called with_pair(int robot, int first, int at, int second, int second_at, std::span<const double> works);
 
-  // When the robot can leave a stop of its route at the earliest, and must begin one at the latest, charging aside.
+  // When the robot can leave a stop of its route at the earliest, and must begin one at the latest, refilling aside.
   double earliest_leave(int robot, int at, std::span<const double> works);
   double latest_begin(int robot, int at, std::span<const double> works);
 
@@ -70,7 +70,7 @@ class StationCalls {
     std::vector<Label> all;
     std::vector<std::pair<int, int>> at_stop;
     std::vector<double> spare;           // by stop: by how much the rest of the route may grow and its labels stay all
-    std::vector<double> loads, pending;  // (stops, commodities) after each
+    std::vector<double> loads, pending;  // (stops, meters) after each
     void clear();
   };
   struct Route {
@@ -88,7 +88,7 @@ class StationCalls {
   void begin(int robot, Labels& labels);
   void copy_labels(const Labels& labels, int stop);
   void label(int robot);
-  void measure_lags(int robot, int stop, std::span<const int> rest, std::span<const double> works);
+  void measure_gaps(int robot, int stop, std::span<const int> rest, std::span<const double> works);
   void measure_rest(int robot, int from, std::span<const int> rest, std::span<const double> works);
   bool cross(int robot, Labels& labels, int from, int to, double rest_before, double rest_after);
   bool arrive(int robot, Labels& labels, int parent, int from, int to, double rest_after);
@@ -96,7 +96,7 @@ class StationCalls {
   void call_again(int robot, Labels& labels, int to, double beyond);
   bool changes(int robot, const Labels& labels, const Label& label, const Station& station) const;
   void add(Labels& labels, Label&& label);
-  double put_down(const Labels& labels, const Label& label, int commodity) const;
+  double put_down(const Labels& labels, const Label& label, int meter) const;
   bool carry_alike(const Labels& labels, const Label& a, const Label& b) const;
   bool overloaded(int robot, const Labels& labels, const Label& label, int stop) const;
   bool runs_short(int robot, const Labels& labels, const Label& label, double rest);
@@ -120,7 +120,7 @@ class StationCalls {
   std::vector<int> current_, deeper_, places_;
   int layer_ = 0, last_task_ = -1;
   double spare_ = kNever;           // of the labels up to the current stop
-  std::vector<double> most_gap_s_;  // by task of the rest, how long the way to it may take for lags between its tasks
+  std::vector<double> most_gap_s_;  // by task of the rest, how long the way to it may take for gaps between its tasks
   double gap_limit_s_ = kNever;     // of the way that is labelled
   std::vector<double> offsets_;
   Labels tried_;

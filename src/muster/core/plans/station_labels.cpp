@@ -80,7 +80,7 @@ void StationCalls::call_again(int robot, Labels& labels, int to, double beyond) 
 // Whether a robot with this label cannot do the rest of the route without a call. If it can, notes by how much the rest
 // may grow until it cannot.
 bool StationCalls::runs_short(int robot, const Labels& labels, const Label& label, double rest) {
-  const bool drains = problem_.battery(robot) < kNever;
+  const bool drains = problem_.energy(robot) < kNever;
   if ((drains && label.frontier.first().energy < rest) || (unloads_ && !labels.loads.empty())) return true;
   if (drains) spare_ = std::min(spare_, label.frontier.first().energy - rest);
   return false;
@@ -89,20 +89,20 @@ bool StationCalls::runs_short(int robot, const Labels& labels, const Label& labe
 // A label at a task once the work is done, or at the end.
 bool StationCalls::arrive(int robot, Labels& labels, int parent, int from, int to, double rest_after) {
   Label label = labels.all[parent];
-  const bool drains = problem_.battery(robot) < kNever;
+  const bool drains = problem_.energy(robot) < kNever;
   const double way = problem_.travel_usage(robot, from, to);
   if (!std::isfinite(way)) return false;
-  const double slack = drains ? -kLabelRounding * problem_.battery(robot) : -kNever;
+  const double slack = drains ? -kLabelRounding * problem_.energy(robot) : -kNever;
   if (label.station >= 0 && label.gap_s + problem_.travel_time(robot, from, to) > gap_limit_s_) return false;
   label.gap_s = 0.0;
   label.usage += way;
   label.parent = parent;
   label.station = -1;
-  label.frontier.shift(problem_.travel_time(robot, from, to), drains ? way : 0.0);
+  label.frontier.advance(problem_.travel_time(robot, from, to), drains ? way : 0.0);
   if (drains) label.frontier.keep_from(slack);
   if (label.frontier.empty()) return false;
   if (to >= problem_.tasks()) {
-    label.frontier.keep_to(problem_.available_until(robot) * (1.0 + kLabelRounding));
+    label.frontier.keep_to(problem_.over_by(robot) * (1.0 + kLabelRounding));
     if (label.frontier.empty()) return false;
     if (ends_before_return(robot)) {
       const Frontier& worked = after_work(labels, parent);
@@ -118,18 +118,18 @@ bool StationCalls::arrive(int robot, Labels& labels, int parent, int from, int t
   label.usage += usage;
   if (!problem_.fits(robot, label.usage + rest_after)) return false;
   if (unloads_ && overloaded(robot, labels, label, static_cast<int>(labels.at_stop.size()))) return false;
-  const double latest = problem_.deadline(to) - takes;
+  const double latest = problem_.ends_by(to) - takes;
   bool any = false;
-  // In each of its windows; in a later one there is more time to charge before.
+  // In each of its openings; in a later one there is more time to refill before.
   for (double from_s = label.frontier.first().time;;) {
     const double opens = problem_.next_begin(to, from_s);
     if (opens > latest * (1.0 + kLabelRounding) || opens == kNever) return any;
     Label done = label;
-    const double closes = problem_.last_begin_of_window(to, opens);
-    // Who charges for as long as there is time is not late by rounding.
+    const double closes = problem_.last_begin_of_opening(to, opens);
+    // Who refills for as long as there is time is not late by rounding.
     done.frontier.wait_until(opens);
     done.frontier.keep_to(std::max(std::min(closes, latest) * (1.0 - kLabelRounding), opens));
-    done.frontier.shift(takes, drains ? usage : 0.0);
+    done.frontier.advance(takes, drains ? usage : 0.0);
     if (drains) done.frontier.keep_from(slack);
     if (!done.frontier.empty()) {
       if (objective == Objective::lateness) {
@@ -148,22 +148,22 @@ int StationCalls::call(int robot, Labels& labels, int parent, int from, int numb
   Label label = labels.all[parent];
   const Station& station = problem_.station(number);
   const int place = problem_.place_of_station(number);
-  const double way = problem_.travel_usage(robot, from, place), full = problem_.battery(robot);
+  const double way = problem_.travel_usage(robot, from, place), full = problem_.energy(robot);
   if (!std::isfinite(way)) return -1;
   label.usage += way;
   label.parent = parent;
   label.station = number;
   label.gap_s += problem_.travel_time(robot, from, place) + std::max(0.0, station.swap_s);
   const bool drains = full < kNever;
-  label.frontier.shift(problem_.travel_time(robot, from, place), drains ? way : 0.0);
+  label.frontier.advance(problem_.travel_time(robot, from, place), drains ? way : 0.0);
   if (drains) label.frontier.keep_from(-kLabelRounding * full);
   if (label.frontier.empty() || !changes(robot, labels, label, station)) return -1;
   if (drains && station.swap_s >= 0.0) {
     label.frontier = Frontier(label.frontier.first().time + station.swap_s, full);
-  } else if (drains && station.charge > 0.0 && station.partial) {
-    label.frontier.charge(station.charge, full);
-  } else if (drains && station.charge > 0.0) {
-    label.frontier.fill(station.charge, full);
+  } else if (drains && station.refill > 0.0 && station.partial) {
+    label.frontier.refill(station.refill, full);
+  } else if (drains && station.refill > 0.0) {
+    label.frontier.fill(station.refill, full);
   }
   if (unloads_ && station.unloads) {
     label.unloaded = static_cast<int>(labels.at_stop.size()) - 1;
@@ -176,31 +176,31 @@ int StationCalls::call(int robot, Labels& labels, int parent, int from, int numb
 
 // Whether anything is different after a visit of a station.
 bool StationCalls::changes(int robot, const Labels& labels, const Label& label, const Station& station) const {
-  const double full = problem_.battery(robot);
+  const double full = problem_.energy(robot);
   if (full < kNever && station.gives_energy() && label.frontier.first().energy < full) return true;
   return unloads_ && station.unloads && label.unloaded != static_cast<int>(labels.at_stop.size()) - 1;
 }
 
 // Whether a load is above what the robot carries, or below nothing, after a stop.
 bool StationCalls::overloaded(int robot, const Labels& labels, const Label& label, int stop) const {
-  const int commodities = problem_.commodities();
-  for (int c = 0; c < commodities; ++c) {
-    const double load = labels.loads[static_cast<std::size_t>(stop) * commodities + c];
+  const int meters = problem_.meters();
+  for (int c = 0; c < meters; ++c) {
+    const double load = labels.loads[static_cast<std::size_t>(stop) * meters + c];
     if (!problem_.carries(robot, c, load - put_down(labels, label, c))) return true;
   }
   return false;
 }
 
 // What a robot put down up to a label: loads differ by no more between labels of one stop.
-double StationCalls::put_down(const Labels& labels, const Label& label, int commodity) const {
+double StationCalls::put_down(const Labels& labels, const Label& label, int meter) const {
   if (label.unloaded < 0) return 0.0;
-  const auto at = static_cast<std::size_t>(label.unloaded) * problem_.commodities() + commodity;
+  const auto at = static_cast<std::size_t>(label.unloaded) * problem_.meters() + meter;
   return labels.loads[at] - labels.pending[at];
 }
 
 bool StationCalls::carry_alike(const Labels& labels, const Label& a, const Label& b) const {
   if (a.unloaded == b.unloaded) return true;
-  for (int c = 0; c < problem_.commodities(); ++c) {
+  for (int c = 0; c < problem_.meters(); ++c) {
     if (put_down(labels, a, c) != put_down(labels, b, c)) return false;
   }
   return true;

@@ -22,9 +22,9 @@ int place_in_unit(const Problem& problem, int task) {
 
 Timeline::Timeline(const Problem& problem)
     : problem_(problem),
-      has_windows_(problem.has_windows()),
+      has_openings_(problem.has_openings()),
       has_limits_(problem.has_time_limits()),
-      has_within_(false),
+      has_gap_most_(false),
       has_tails_(problem.objective() == Objective::makespan),
       looks_back_(has_limits_ || has_tails_),
       routes_(problem.robots()),
@@ -47,7 +47,7 @@ Timeline::Timeline(const Problem& problem)
     last.robot = robot;
     last.place = problem.end(robot);
     last.label = 1.0;
-    last.latest = problem.available_until(robot);
+    last.latest = problem.over_by(robot);
     routes_[robot] = {robot, robots + robot};
     last.at = 1;
     join(robot, robots + robot);
@@ -61,11 +61,11 @@ void Timeline::build_arcs() {
     const auto prerequisites = problem_.prerequisites(task);
     for (std::size_t k = 0; k < prerequisites.size(); ++k) {
       const int earlier = prerequisites[k], other = problem_.unit(earlier);
-      const double after = problem_.after(task, static_cast<int>(k)),
-                   within = problem_.within(task, static_cast<int>(k));
+      const double after = problem_.gap_least(task, static_cast<int>(k)),
+                   within = problem_.gap_most(task, static_cast<int>(k));
       before[unit].push_back({other, earlier, place_in_unit(problem_, task), after, within});
       behind[other].push_back({unit, task, place_in_unit(problem_, earlier), after, within});
-      has_within_ |= std::isfinite(within);
+      has_gap_most_ |= std::isfinite(within);
     }
   }
   for (int unit = 0; unit < problem_.units(); ++unit) {
@@ -113,7 +113,7 @@ double Timeline::latest_for(int unit, std::span<const double> work) const {
   if (!has_limits_) return latest;
   const auto tasks = problem_.tasks_of_unit(unit);
   for (std::size_t k = 0; k < tasks.size(); ++k) {
-    latest = std::min(latest, problem_.deadline(tasks[k]) - work[k]);
+    latest = std::min(latest, problem_.ends_by(tasks[k]) - work[k]);
   }
   for (const Arc& arc : behind_[unit]) {
     if (present(arc.unit)) latest = std::min(latest, latest_of(arc.unit) - arc.after - work[arc.own]);
@@ -132,7 +132,7 @@ double Timeline::tail_after(int unit, std::span<const double> work) const {
 }
 
 double Timeline::open(int unit, double earliest) const {
-  if (!has_windows_) return earliest;
+  if (!has_openings_) return earliest;
   const auto tasks = problem_.tasks_of_unit(unit);
   for (double begin = earliest;;) {
     for (const int task : tasks) begin = problem_.next_begin(task, begin);

@@ -42,12 +42,12 @@ struct Labels {
 };
 
 // The graph whose nodes are units of work (a task with its team, or tasks that start together) and whose arcs are legs
-// of routes and prerequisites with lags. Heads (earliest begins), latest begins and tails are kept as in insertion
+// of routes and prerequisites with gaps. Heads (earliest begins), latest begins and tails are kept as in insertion
 // methods for the job shop [mastrolilli2000]. Units carry labels that rise along every arc, so that a change is
 // propagated once through the part that it affects, in topological order [pearce2006]. A label strictly between those
 // of what comes before and after keeps it; labels are renewed in order of time at `commit`.
 //
-// Maximum lags make cycles of lower bounds: where a problem has any, begins are the least fixpoint, found anew.
+// Maximum gaps make cycles of lower bounds: where a problem has any, begins are the least fixpoint, found anew.
 class Timeline {
  public:
   explicit Timeline(const Problem& problem);
@@ -80,13 +80,13 @@ class Timeline {
 
   // What the prerequisites and dependants of a unit that is absent allow; those absent too pass on what they wait for.
   Labels labels_for(int unit);
-  // What its present prerequisites allow: no earlier than this, windows aside.
+  // What its present prerequisites allow: no earlier than this, openings aside.
   double ready(int unit) const;
-  // Until when it must begin for its windows and present dependants, if its tasks take so long as `work` says.
+  // Until when it must begin for its openings and present dependants, if its tasks take so long as `work` says.
   double latest_for(int unit, std::span<const double> work) const;
   // How long all that waits for a unit's end takes after the begin, routes aside.
   double tail_after(int unit, std::span<const double> work) const;
-  // The first time from `earliest` on that the windows of all its tasks allow.
+  // The first time from `earliest` on that the openings of all its tasks allow.
   double open(int unit, double earliest) const;
   // The last time up to `latest` that they allow, each for itself.
   double last_open(int unit, double latest) const;
@@ -198,7 +198,7 @@ class Timeline {
   void save(int unit);
 
   const Problem& problem_;
-  bool has_windows_, has_limits_, has_within_, has_tails_;
+  bool has_openings_, has_limits_, has_gap_most_, has_tails_;
   bool looks_back_;
   Arcs before_, behind_;       // by unit: prerequisites, dependants
   std::vector<Visit> visits_;  // starts, ends, then those of tasks

@@ -20,7 +20,7 @@ bool Timeline::settle() {
 }
 
 bool Timeline::settle_begins() {
-  if (has_within_ && !(forward_.empty() && backward_.empty())) return settle_cycles();
+  if (has_gap_most_ && !(forward_.empty() && backward_.empty())) return settle_cycles();
   renew_budget();
   return forward();
 }
@@ -39,7 +39,7 @@ double Timeline::earliest_begin(int unit) {
     const Visit& visit = visits_[number];
     begin = std::max(begin, before(visit).leave + visit.in);
   }
-  if (has_within_) {
+  if (has_gap_most_) {
     const auto work = works_of(unit);
     for (const Arc& arc : behind_[unit]) {
       if (present(arc.unit)) begin = std::max(begin, begin_of(arc.unit) - arc.within - work[arc.own]);
@@ -96,7 +96,7 @@ bool Timeline::keeps_bounds(int unit) const {
   if (!has_limits_) return true;
   for (const int number : node.visits) {
     const Visit& visit = visits_[number];
-    if (!in_time(visit.leave, problem_.deadline(visit.place))) return false;
+    if (!in_time(visit.leave, problem_.ends_by(visit.place))) return false;
     const Visit& next = behind(visit);
     if (next.unit < 0 && !in_time(visit.leave + next.in, next.latest)) return false;
   }
@@ -110,7 +110,7 @@ void Timeline::queue_later(int unit) {
   for (const Arc& arc : behind_[unit]) {
     if (present(arc.unit)) queue_forward(arc.unit);
   }
-  if (!has_within_) return;
+  if (!has_gap_most_) return;
   for (const Arc& arc : before_[unit]) {
     if (arc.within < kNever && present(arc.unit)) queue_forward(arc.unit);
   }
@@ -123,7 +123,7 @@ void Timeline::queue_earlier(int unit) {
   for (const Arc& arc : before_[unit]) {
     if (present(arc.unit)) queue_backward(arc.unit);
   }
-  if (!has_within_) return;
+  if (!has_gap_most_) return;
   for (const Arc& arc : behind_[unit]) {
     if (arc.within < kNever && present(arc.unit)) queue_backward(arc.unit);
   }
@@ -145,12 +145,12 @@ bool Timeline::forward() {
       queue_later(unit);
     }
     possible = possible && keeps_bounds(unit);
-    if (has_within_ && !possible) return false;
+    if (has_gap_most_ && !possible) return false;
   }
   return possible;
 }
 
-// Latest begins only fall here. Where no schedule exists they fall for ever round a cycle of maximum lags, as begins
+// Latest begins only fall here. Where no schedule exists they fall for ever round a cycle of maximum gaps, as begins
 // rise: the propagation ends with its budget then. What it leaves is too late at worst, so that nothing is rejected by
 // it that begins do not reject.
 void Timeline::backward() {
@@ -170,7 +170,7 @@ void Timeline::backward() {
   }
 }
 
-// Where maximum lags tie begins to each other in cycles, a fixpoint that is not the least may hold itself up. So begins
+// Where maximum gaps tie begins to each other in cycles, a fixpoint that is not the least may hold itself up. So begins
 // rise from nothing, and latest begins fall from the end of time.
 bool Timeline::settle_cycles() {
   drop_queues();
@@ -190,8 +190,8 @@ bool Timeline::settle_cycles() {
 // Without cycles each unit is looked at about once. In a graph with cycles a fixpoint is found after each unit was
 // looked at some times, or there is none.
 void Timeline::renew_budget() {
-  const auto units =
-      has_within_ ? std::ranges::count_if(nodes_, [](const Node& n) { return !n.visits.empty(); }) : std::ssize(nodes_);
+  const auto units = has_gap_most_ ? std::ranges::count_if(nodes_, [](const Node& n) { return !n.visits.empty(); })
+                                   : std::ssize(nodes_);
   budget_ = 1000 + 64 * static_cast<int>(units);
 }
 

@@ -20,14 +20,14 @@ bool Placement::best_transport(int pickup, int delivery, const Trial& trial) {
   labels_ = roster_.timeline_.labels_for(unit);
   second_labels_ = roster_.timeline_.labels_for(second);
   if (labels_.empty() || second_labels_.empty()) return false;
-  if (std::ranges::find(problem_.other_robot(pickup), delivery) != problem_.other_robot(pickup).end()) return false;
+  if (std::ranges::find(problem_.apart(pickup), delivery) != problem_.apart(pickup).end()) return false;
   ready_ = timeline_.ready(unit);
   second_ready_ = timeline_.ready(second);
   peak_ = roster_.peak();
   const auto before = problem_.prerequisites(delivery);
-  const auto lag = std::ranges::find(before, pickup) - before.begin();
-  after_ = lag < std::ssize(before) ? problem_.after(delivery, static_cast<int>(lag)) : 0.0;
-  within_ = lag < std::ssize(before) ? problem_.within(delivery, static_cast<int>(lag)) : kNever;
+  const auto gap = std::ranges::find(before, pickup) - before.begin();
+  after_ = gap < std::ssize(before) ? problem_.gap_least(delivery, static_cast<int>(gap)) : 0.0;
+  within_ = gap < std::ssize(before) ? problem_.gap_most(delivery, static_cast<int>(gap)) : kNever;
   may_transport_.assign(problem_.robots(), 1);
   for (const int each : {second, unit}) {  // the first last, whose relations stay known
     relations_.look_at(each, trial.robots);
@@ -109,7 +109,7 @@ void Placement::try_pickup_at(int robot, int at, int pickup, int delivery) {
 
 bool Placement::room_for_transport(const Walk& walk, int at) const {
   if (problem_.unloads_at_stations()) return true;
-  for (int c = 0; c < problem_.commodities(); ++c) {
+  for (int c = 0; c < problem_.meters(); ++c) {
     const double load = roster_.load(walk.robot, at, c) + problem_.load(walk.pickup, c);
     if (!problem_.carries(walk.robot, c, load)) return false;
   }

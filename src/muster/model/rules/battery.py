@@ -66,10 +66,10 @@ class Battery(Rule):
         ]
         robots = problem.robots
         if not problem.holds(self.word) or all(robot.battery is None for robot in robots):
-            return {"battery": np.empty(0), "battery_at_start": np.empty(0), "stations": stations}
+            return {"energy": np.empty(0), "energy_at_start": np.empty(0), "stations": stations}
         return {
-            "battery": np.array([energy_room(robot) for robot in robots]),
-            "battery_at_start": np.array([energy_at_start(problem, i) for i in range(len(robots))]),
+            "energy": np.array([energy_room(robot) for robot in robots]),
+            "energy_at_start": np.array([energy_at_start(problem, i) for i in range(len(robots))]),
             "stations": stations,
         }
 

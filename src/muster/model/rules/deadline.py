@@ -61,30 +61,30 @@ class Deadline(Rule):
     key = "deadline"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        deadline = problem.timed_rules.deadline
+        deadline = problem.timed_rules.ends_by
         return {"deadline": first_task(problem, "deadline_s", lambda j: np.isfinite(deadline[j]))}
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        return {"deadline": limits_array(problem.timed_rules.deadline)}
+        return {"ends_by": limits_array(problem.timed_rules.ends_by)}
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.is_timed:
             return None
-        return np.asarray(limits.pair_end <= limits.rules.deadline * (1 + ROUNDING))
+        return np.asarray(limits.pair_end <= limits.rules.ends_by * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         limits = outlook.limits
         if not limits.is_timed or too_late(problem, j, float(limits.pair_end[i, j])) is None:
             return None
         free = limits.without_deadline(j)
-        (until,) = moments(problem, float(problem.timed_rules.deadline[j]))
+        (until,) = moments(problem, float(problem.timed_rules.ends_by[j]))
         late = None if free is None else too_late(problem, j, float(free.pair_end[i, j]))
         return late or f"what it waits for is too late for its deadline, which is {until}"
 
 
 def too_late(problem: Question, j: int, end: float) -> str | None:
     """That work on a task which ends at a time is too late; None: it is not."""
-    deadline = float(problem.timed_rules.deadline[j])
+    deadline = float(problem.timed_rules.ends_by[j])
     if math.isinf(end) or end <= deadline * (1 + ROUNDING):
         return None
     ends, until = moments(problem, end, deadline)

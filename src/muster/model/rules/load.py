@@ -14,7 +14,7 @@ from muster.mission.model import Robot, Task
 from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot, first_task
 
 Amounts = Mapping[str, float]
-_ARRAYS = ("load", "pending", "load_capacity", "load_at_start", "pending_at_start")
+_ARRAYS = ("load", "pending", "most_aboard", "load_at_start", "pending_at_start")
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Load(Rule):
         names, none = commodities(problem), np.empty(0)
         if not names:
             arrays: dict[str, Any] = dict.fromkeys(_ARRAYS, none)
-            return arrays | {"commodities": 0, "pickup": np.empty(0, dtype=np.int32)}
+            return arrays | {"meters": 0, "pickup": np.empty(0, dtype=np.int32)}
         pickup = pickups(problem)
         delivered = {k for k in pickup if k >= 0}
         own = np.array([[by_commodity(task.load).get(name, 0.0) for name in names] for task in problem.tasks])
@@ -75,11 +75,11 @@ class Load(Rule):
                 aboard[i] -= own[j]
                 taken_on[j] = own[j]
         return {
-            "commodities": len(names),
+            "meters": len(names),
             "load": own - put_down,
             "pending": taken_on - put_down,
             "pickup": np.array(pickup if delivered else [], dtype=np.int32),
-            "load_capacity": np.array([[room_for(robot, name) for name in names] for robot in problem.robots]),
+            "most_aboard": np.array([[room_for(robot, name) for name in names] for robot in problem.robots]),
             "pending_at_start": aboard,
             "load_at_start": np.array([[_at_start(one).get(name, 0.0) for name in names] for one in problem.robots]),
         }

@@ -57,7 +57,7 @@ class MinTasks(Rule):
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
         least = least_tasks(problem)
-        return {"min_tasks": least if (least > 1).any() else np.empty(0, dtype=np.int32)}
+        return {"least_stops": least if (least > 1).any() else np.empty(0, dtype=np.int32)}
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
         return _least(problem, i)

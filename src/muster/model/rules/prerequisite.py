@@ -22,7 +22,7 @@ from muster.model.rules.rule import (
 
 def _awaited_lags(problem: Question, j: int) -> list[tuple[float, float]]:
     """For each task that must be done before task j, also the one whose goods it delivers, the least and most lag."""
-    known = {k: (after, within) for k, after, within in problem.timed_rules.lags(j)}
+    known = {k: (after, within) for k, after, within in problem.timed_rules.gaps(j)}
     return [known.get(k, (0.0, np.inf)) for k in problem.awaited[j]]
 
 
@@ -33,14 +33,14 @@ class Prerequisite(Rule):
     asked = ("lag",)
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        lags = problem.timed_rules.lags
+        lags = problem.timed_rules.gaps
         lagged = [any(after or np.isfinite(within) for _, after, within in lags(j)) for j in range(len(problem.tasks))]
         return {"lag": first_task(problem, "prerequisites with after_s or within_s", lambda j: lagged[j])}
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
         lags = [lag for j in range(len(problem.tasks)) for lag in _awaited_lags(problem, j)]
         after, within = np.array(lags).reshape(-1, 2).T
-        return {"after": after if after.any() else np.empty(0), "within": limits_array(within)}
+        return {"gap_least": after if after.any() else np.empty(0), "gap_most": limits_array(within)}
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.held_back:

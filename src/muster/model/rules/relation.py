@@ -51,10 +51,10 @@ class Relation(Rule):
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         rules = problem.timed_rules
-        same = _stated(problem, "same_robot_as", lambda j: rules.same_robot[j])
+        same = _stated(problem, "same_robot_as", lambda j: rules.same_crew[j])
         whole = len(rules.units) == len(problem.tasks)
         return {
-            "relation": same or _stated(problem, "other_robot_than", lambda j: rules.other_robot[j]),
+            "relation": same or _stated(problem, "other_robot_than", lambda j: rules.apart[j]),
             "starts-with": None if whole else first_task(problem, "starts_with", rules.beginning_with),
         }
 
@@ -62,8 +62,8 @@ class Relation(Rule):
         rules, alone = problem.timed_rules, len(problem.timed_rules.units) == len(problem.tasks)
         return {
             "unit": np.array([] if alone else rules.unit, dtype=np.int32),
-            "same_robot": rules.same_robot if any(rules.same_robot) else [],
-            "other_robot": rules.other_robot if any(rules.other_robot) else [],
+            "same_crew": rules.same_crew if any(rules.same_crew) else [],
+            "apart": rules.apart if any(rules.apart) else [],
         }
 
     def possible(self, limits: Limits) -> Bools | None:
@@ -87,7 +87,7 @@ class Relation(Rule):
         for k in limits.must_also(j):
             if not self._beside(limits, j, k)[i]:
                 name = problem.tasks[k].id
-                if k in limits.rules.same_robot[j]:
+                if k in limits.rules.same_crew[j]:
                     return f"the same robot must do {name}, which comes with it, and cannot be {problem.robots[i].id}"
                 return f"another robot must do {name}, which comes with it, and only {problem.robots[i].id} can"
         unit = limits.rules.units[limits.rules.unit[j]]
@@ -98,11 +98,11 @@ class Relation(Rule):
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         problem, rules = plan.problem, plan.problem.timed_rules
-        for k in rules.same_robot[j]:
+        for k in rules.same_crew[j]:
             if plan.members(k) and i not in plan.members(k):
                 by = listed([problem.robots[m].id for m in plan.members(k)])
                 return f"the same robot must do {problem.tasks[k].id}, and {by} does it"
-        for k in rules.other_robot[j]:
+        for k in rules.apart[j]:
             if i in plan.members(k):
                 return f"another robot must do {problem.tasks[k].id}, which is in its route"
         return plan.kept_out(self.word, i, j)
@@ -111,9 +111,9 @@ class Relation(Rule):
     def _beside(limits: Limits, j: int, k: int) -> Bools:
         """(m,) which robots can do task j as far as its relations to task k, which is done too, tell."""
         others = limits.usable[:, k]
-        if k in limits.rules.same_robot[j]:
+        if k in limits.rules.same_crew[j]:
             return others
-        if k in limits.rules.other_robot[j] and int(others.sum()) == 1:
+        if k in limits.rules.apart[j] and int(others.sum()) == 1:
             return ~others
         return np.ones_like(others)
 

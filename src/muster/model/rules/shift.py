@@ -65,19 +65,19 @@ class Shift(Rule):
     key = "shift"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        until = problem.timed_rules.available_until
+        until = problem.timed_rules.over_by
         return {"shift": first_robot(problem, "available_until_s", lambda i: np.isfinite(until[i]))}
 
     def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        return {"available_until": limits_array(problem.timed_rules.available_until)}
+        return {"over_by": limits_array(problem.timed_rules.over_by)}
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
-        return float(problem.timed_rules.available_until[i])
+        return float(problem.timed_rules.over_by[i])
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.is_timed:
             return None
-        until = limits.rules.available_until[:, None]
+        until = limits.rules.over_by[:, None]
         return np.asarray(limits.pair_end + limits.home <= until * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
@@ -85,7 +85,7 @@ class Shift(Rule):
         if not limits.is_timed or beyond(problem, i, _end(limits, i, j)) is None:
             return None
         free = limits.without_shift(i)
-        (until,) = moments(problem, float(problem.timed_rules.available_until[i]))
+        (until,) = moments(problem, float(problem.timed_rules.over_by[i]))
         late = None if free is None else beyond(problem, i, _end(free, i, j))
         return late or f"what it waits for is too late for its shift, which ends at {until}"
 
@@ -97,7 +97,7 @@ def _end(limits: Limits, i: int, j: int) -> float:
 
 def beyond(problem: Question, i: int, end: float) -> str | None:
     """That a route which ends at a time is beyond the robot's shift; None: it is not."""
-    until = float(problem.timed_rules.available_until[i])
+    until = float(problem.timed_rules.over_by[i])
     if math.isinf(end) or end <= until * (1 + ROUNDING):
         return None
     back, over = moments(problem, end, until)
