@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,15 +12,13 @@ from muster.mission.model import Station
 from muster.mission.values.arrays import Floats
 from muster.model.parts import Meter
 from muster.model.plan_model import PlanModel
+from muster.model.rules import Question
 from muster.motion.leg_times import LegTimes
-
-if TYPE_CHECKING:
-    from muster.model.problem import Problem
 
 _NONE = np.empty(0)
 
 
-def core_arrays(problem: Problem, profiles: Sequence[LegTimes]) -> dict[str, Any]:
+def core_arrays(problem: Question, profiles: Sequence[LegTimes]) -> dict[str, Any]:
     """The keyword arguments of `core.Problem` that are about times, crews, goods and energy."""
     model = problem.model
     return {
@@ -34,7 +32,7 @@ def core_arrays(problem: Problem, profiles: Sequence[LegTimes]) -> dict[str, Any
         **_meters(model),
         "energy": model.energy if model.parts.energy else _NONE,
         "energy_at_start": model.energy_at_start if model.parts.energy else _NONE,
-        "stations": [_station(station) for station in problem.stations],
+        "stations": [_station(station) for station in problem.mission.stations],
         **_profiles(profiles),
         "makespan_includes_return": problem.mission.rules.makespan_includes_return,
     }
