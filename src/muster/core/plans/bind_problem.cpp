@@ -89,7 +89,7 @@ void bind_problem(nb::module_& m) {
              Numbers work_seconds, Indices time_class, Numbers priority, Indices kind, Flags allowed,
              const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Indices place_class,
              Numbers table, Indices travel_class, const Openings& openings, Numbers ends_by, Numbers due,
-             Numbers over_by, Numbers gap_least, Numbers gap_most, Indices unit, const Parts& parts, Numbers abilities,
+             Numbers over_by, Numbers lasts_most, const Openings& spans, Numbers gap_least, Numbers gap_most, Indices unit, const Parts& parts, Numbers abilities,
              Numbers needs, const std::vector<std::vector<int>>& same_crew, const std::vector<std::vector<int>>& apart,
              Indices least_stops, Numbers acceleration, Numbers climb, Numbers turn, bool over_map,
              bool makespan_includes_return, int meters, Numbers load, Numbers pending, Indices pickup,
@@ -125,6 +125,8 @@ void bind_problem(nb::module_& m) {
             data.ends_by = numbers(ends_by);
             data.due = numbers(due);
             data.over_by = numbers(over_by);
+            data.lasts_most = numbers(lasts_most);
+            data.spans = openings_of(spans);
             data.gap_least = numbers(gap_least);
             data.gap_most = numbers(gap_most);
             data.unit.assign(unit.data(), unit.data() + unit.size());
@@ -156,7 +158,7 @@ void bind_problem(nb::module_& m) {
           nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "available_from"_a, "must_end"_a,
           "fixed"_a, "actuation_cost"_a, "work_class"_a, "work_seconds"_a, "time_class"_a, "priority"_a, "kind"_a,
           "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "place_class"_a, "table"_a, "travel_class"_a,
-          "openings"_a, "ends_by"_a, "due"_a, "over_by"_a, "gap_least"_a, "gap_most"_a, "unit"_a, "parts"_a,
+          "openings"_a, "ends_by"_a, "due"_a, "over_by"_a, "lasts_most"_a, "spans"_a, "gap_least"_a, "gap_most"_a, "unit"_a, "parts"_a,
           "abilities"_a, "needs"_a, "same_crew"_a, "apart"_a, "least_stops"_a, "acceleration"_a, "climb"_a, "turn"_a,
           "over_map"_a, "makespan_includes_return"_a, "meters"_a, "load"_a, "pending"_a, "pickup"_a, "most_aboard"_a,
           "load_at_start"_a, "pending_at_start"_a, "energy"_a, "energy_at_start"_a, "stations"_a, "waiting"_a,
@@ -170,7 +172,8 @@ void bind_problem(nb::module_& m) {
           "`travel_class`. What is empty of the rest no task or robot has: by task `openings`, `ends_by`, `due`, "
           "`unit` "
           "(tasks of one begin together), `parts` of teams (count, allowed by kind), `same_crew`, `apart`; by "
-          "robot `over_by`, `least_stops` (of a route that has any); `gap_least` and `gap_most` by prerequisite; "
+          "robot `over_by`, `lasts_most` (from its start to its end), `spans` in which it drives and works, "
+          "`least_stops` (of a route that has any); `gap_least` and `gap_most` by prerequisite; "
           "`abilities` (m, a) and `needs` (n, a); by "
           "robot `acceleration`, `climb`, `turn` (seconds) of motion profiles, and `over_map` whether what is longer "
           "than "

@@ -189,7 +189,7 @@ void Placement::try_place(int robot, int task, int at) {
   go_on(there, task);
   if (hopeless(there)) return;
   const int unit = problem_.unit(task);
-  const double begin = timeline_.open(unit, std::max(ready_, there.arrive));
+  const double begin = open_to(unit, robot, std::max(ready_, there.arrive), work);
   if (!timeline_.in_time(begin, latest_) || !timeline_.in_time(begin + work, there.latest)) return;
   if (sees_usage) measure_usage(there, task);
   InsertionScore score(problem_.objective(), peak_);
@@ -200,6 +200,7 @@ void Placement::try_place(int robot, int task, int at) {
   if (value >= best_.score) return;
   if (!sees_usage) measure_usage(there, task);
   if (!problem_.fits(robot, there.usage + there.growth)) return;
+  if (const Added added{at, task}; !keeps_length(robot, {&added, 1})) return;
   if (may_call(robot)) {
     const double ends = begin + std::max(tail_, work + there.onward);
     return keep({value, there.growth, there.usage, ends, there.in + work + there.out - there.direct, robot, at, -1});
@@ -271,7 +272,7 @@ Offer Placement::arrival(int robot, int task, int at, double work) const {
   offer.at = at;
   offer.work = work;
   offer.in = problem_.travel_time(robot, last.place, task);
-  offer.arrive = leave(robot, at) + offer.in;
+  offer.arrive = problem_.arrives(robot, leave(robot, at), offer.in);
   offer.direct = next.unit >= 0 || last.unit >= 0 ? next.in : 0.0;
   if (may_call(robot) && offer.direct > 0.0) offer.direct = problem_.travel_time(robot, last.place, next.place);
   offer.onward = next.tail;
@@ -283,7 +284,7 @@ void Placement::go_on(Offer& offer, int task) const {
   const Visit& next = timeline_.stop(offer.robot, offer.at + 1);
   const bool goes_on = next.unit >= 0 || problem_.must_end(offer.robot);
   offer.out = goes_on ? problem_.travel_time(offer.robot, task, next.place) : 0.0;
-  offer.latest = latest_begin(offer.robot, offer.at + 1) - offer.out;
+  offer.latest = problem_.last_set_out(offer.robot, latest_begin(offer.robot, offer.at + 1), offer.out);
   offer.onward = next.unit >= 0 || problem_.makespan_includes_return() ? offer.out + next.tail : 0.0;
   if (next.unit >= 0) offer.next = timeline_.begin_of(next.unit);
 }
@@ -311,15 +312,17 @@ double Placement::lateness(int task, double end) const {
 // What the lateness of the tasks after a place grows by in that route.
 double Placement::delays(const Offer& offer, double end) const {
   const auto& route = timeline_.route(offer.robot);
-  double sum = 0.0, arrival = end + offer.out;
+  double sum = 0.0, arrival = problem_.arrives(offer.robot, end, offer.out);
   for (std::size_t at = offer.at + 1; at + 1 < route.size(); ++at) {
     const Visit& visit = timeline_.visit(route[at]);
-    const double begin = timeline_.open(visit.unit, arrival), now = timeline_.begin_of(visit.unit);
+    const double begin = open_to(visit.unit, offer.robot, arrival, timeline_.work_of(visit.place));
+    const double now = timeline_.begin_of(visit.unit);
     if (begin <= now || begin == kNever) break;
     const double leave = visit.leave + (begin - now);
     sum += lateness(visit.place, leave) - lateness(visit.place, visit.leave);
     const Visit& next = timeline_.visit(route[at + 1]);
-    arrival = leave + problem_.travel_time(offer.robot, visit.place, next.place);
+    const double way = problem_.travel_time(offer.robot, visit.place, next.place);
+    arrival = problem_.arrives(offer.robot, leave, way);
   }
   return sum;
 }

@@ -133,6 +133,14 @@ class Placement {
   bool may_begin(int unit, double begin) const;
   double lateness_of_team(int unit, double begin) const;
 
+  // A task that would be done behind so many tasks of a route as it is.
+  struct Added {
+    int at, task;
+  };
+  bool keeps_length(int robot, std::span<const Added> added) const;
+  double over(int robot, std::span<const Added> added, double leave) const;
+  double open_to(int unit, int robot, double earliest, double work) const;
+  double open_to_team(int unit, double earliest) const;
   bool in_reach(int robot, int task, int at) const;
   double least_score(int robot, int at, double work) const;
   double least_score(const Offer& arrival) const;

@@ -141,6 +141,8 @@ void Problem::check_times() const {
               fits(data_.unit.size(), tasks) && fits(data_.parts.size(), tasks),
           "times of tasks need a value for each task");
   require(fits(data_.over_by.size(), robots), "ends of routes need a value for each robot");
+  require(fits(data_.lasts_most.size(), robots) && fits(data_.spans.size(), robots),
+          "greatest lengths of routes, and spans, need a value for each robot");
   require(fits(data_.least_stops.size(), robots), "least numbers of tasks need a value for each robot");
   const std::size_t edges = data_.prerequisites.values.size();
   require(fits(data_.gap_least.size(), edges) && fits(data_.gap_most.size(), edges),
@@ -269,7 +271,8 @@ void Problem::find_twins() {
   std::map<std::vector<double>, std::vector<int>> firsts;  // by what is quick to compare
   twins_.resize(robots_);
   for (int robot = 0; robot < robots_; ++robot) {
-    std::vector<double> key{capacity(robot), available_from(robot), over_by(robot)};
+    std::vector<double> key{capacity(robot), available_from(robot), over_by(robot), lasts_most(robot)};
+    for (const Opening& span : has_spans() ? data_.spans[robot] : Spans()) key.insert(key.end(), {span.open, span.close});
     key.insert(key.end(), {must_end(robot) ? 1.0 : 0.0, static_cast<double>(fixed(robot)),
                            static_cast<double>(least_stops(robot))});
     for (int axis = 0; axis < 3; ++axis) key.insert(key.end(), {entry(start(robot), axis), entry(end(robot), axis)});
@@ -328,7 +331,7 @@ void Problem::find_units() {
     tasks_of_unit_.values.insert(tasks_of_unit_.values.end(), row.begin(), row.end());
     tasks_of_unit_.first.push_back(static_cast<int>(tasks_of_unit_.values.size()));
   }
-  timed_ = has_time_limits() || !data_.gap_least.empty() || !data_.gap_most.empty() || !data_.unit.empty() ||
+  timed_ = has_time_limits() || has_lasts_most() || !data_.gap_least.empty() || !data_.gap_most.empty() || !data_.unit.empty() ||
            !data_.parts.empty() || !data_.needs.empty() || !data_.same_crew.values.empty() ||
            !data_.apart.values.empty() || has_least_stops() || data_.meters > 0 || !data_.energy.empty() ||
            data_.objective == Objective::lateness ||

@@ -26,6 +26,8 @@ struct Opening {
   double close;
 };
 
+using Spans = std::vector<Opening>;  // sorted and apart
+
 // So many robots of the kinds that are allowed.
 struct TeamPart {
   int count;
@@ -73,6 +75,8 @@ struct ProblemData {
   std::vector<std::vector<Opening>> openings;  // by task, sorted
   std::vector<double> ends_by, due;            // by task; inf: none
   std::vector<double> over_by;                 // by robot; inf: without end
+  std::vector<double> lasts_most;              // by robot: the most time from its start to its end; inf: any
+  std::vector<Spans> spans;                    // by robot: when it drives and works; empty: at any time
   std::vector<int> least_stops;                // by robot: the least number of tasks of a route that has any
   std::vector<double> gap_least, gap_most;     // gaps, parallel to prerequisites.values; 0 and inf: none
   std::vector<int> unit;                       // by task: its number of a node; tasks that start together share it
@@ -133,11 +137,40 @@ class Problem {
   // then.
   bool is_timed() const { return timed_; }
   bool has_openings() const { return !data_.openings.empty(); }
-  // Whether work or routes must be over by a time: openings, latest ends, ends of routes.
-  bool has_time_limits() const { return has_openings() || !data_.ends_by.empty() || !data_.over_by.empty(); }
+  // Whether work or routes must be over by a time: openings, latest ends, ends of routes, spans of robots.
+  bool has_time_limits() const {
+    return has_openings() || !data_.ends_by.empty() || !data_.over_by.empty() || has_spans();
+  }
   double ends_by(int task) const { return data_.ends_by.empty() ? kInfinity : data_.ends_by[task]; }
   double due(int task) const { return data_.due.empty() ? kInfinity : data_.due[task]; }
   double over_by(int robot) const { return data_.over_by.empty() ? kInfinity : data_.over_by[robot]; }
+  // From leaving its start to the end of its route a robot takes at most so long.
+  bool has_lasts_most() const { return !data_.lasts_most.empty(); }
+  double lasts_most(int robot) const { return data_.lasts_most.empty() ? kInfinity : data_.lasts_most[robot]; }
+  // Whether some robots rest: they drive and work in spans alone.
+  bool has_spans() const { return !data_.spans.empty(); }
+  bool rests(int robot) const { return has_spans() && !data_.spans[robot].empty(); }
+  // The first time from `earliest` on from which a robot can be busy for so long without a rest; inf: none is left.
+  double set_out(int robot, double earliest, double seconds) const {
+    if (!rests(robot)) return earliest;
+    for (const Opening& span : data_.spans[robot]) {
+      const double begin = earliest < span.open ? span.open : earliest;
+      if (ends_within(begin + seconds, span.close)) return begin;
+    }
+    return kInfinity;
+  }
+  // The last time from which it can be so, and be done by `latest`; -inf: none is.
+  double last_set_out(int robot, double latest, double seconds) const {
+    if (!rests(robot)) return latest - seconds;
+    const auto& spans = data_.spans[robot];
+    for (auto span = spans.rbegin(); span != spans.rend(); ++span) {
+      const double begin = (latest < span->close ? latest : span->close) - seconds;
+      if (ends_within(span->open, begin)) return begin;
+    }
+    return -kInfinity;
+  }
+  // When a robot that may leave a place at a time is at another, so many seconds away.
+  double arrives(int robot, double leave, double seconds) const { return set_out(robot, leave, seconds) + seconds; }
   bool has_least_stops() const { return !data_.least_stops.empty(); }
   int least_stops(int robot) const { return data_.least_stops.empty() ? 0 : data_.least_stops[robot]; }
   // Of a task's prerequisite number k: the least and the most time between its end and the task's begin.
@@ -310,6 +343,10 @@ class Problem {
   double growth(int robot, std::span<const int> route, int task, int at) const;
 
  private:
+  static bool ends_within(double end, double limit) {
+    constexpr double kRounding = 1e-11;
+    return end <= limit + kRounding * (limit < 1.0 ? 1.0 : limit);
+  }
   void find_robots_allowed();
   void find_units();
   void find_transports();

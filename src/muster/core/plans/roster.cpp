@@ -290,10 +290,10 @@ std::vector<std::vector<StopTimes>> Roster::stops() const {
   std::vector<std::vector<StopTimes>> stops(problem_.robots());
   for (int robot = 0; robot < problem_.robots(); ++robot) {
     for (int at = 1; at <= timeline_.tasks_in(robot) + 1; ++at) {
-      const Visit &last = timeline_.stop(robot, at - 1), &visit = timeline_.stop(robot, at);
+      const Visit& visit = timeline_.stop(robot, at);
       add_calls(robot, at, stops[robot]);
       if (visit.unit < 0) continue;
-      stops[robot].push_back({visit.place, last.leave + visit.in, timeline_.begin_of(visit.unit), visit.leave});
+      stops[robot].push_back({visit.place, timeline_.arrival(visit), timeline_.begin_of(visit.unit), visit.leave});
     }
   }
   return stops;

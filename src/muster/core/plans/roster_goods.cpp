@@ -75,7 +75,7 @@ void Roster::set_ways(int robot, bool restored) {
 void Roster::add_calls(int robot, int at, std::vector<StopTimes>& stops) const {
   if (!calls_) return;
   int place = timeline_.stop(robot, at - 1).place;
-  double time = timeline_.stop(robot, at - 1).leave;
+  double time = timeline_.leave(robot, at - 1);
   for (const Call& call : calls_->calls(robot)) {
     if (call.at != at - 1) continue;
     const int there = problem_.place_of_station(call.station);
@@ -132,7 +132,7 @@ double Roster::arrival(int robot, std::size_t number) const {
   const auto& calls = calls_->calls(robot);
   const int at = calls[number].at;
   int place = timeline_.stop(robot, at).place;
-  double time = timeline_.stop(robot, at).leave;
+  double time = timeline_.leave(robot, at);
   for (std::size_t k = 0; k <= number; ++k) {
     if (calls[k].at != at) continue;
     const int there = problem_.place_of_station(calls[k].station);

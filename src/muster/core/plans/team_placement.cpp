@@ -172,7 +172,8 @@ void Placement::make_offers(int unit, std::size_t candidate) {
     if (!in_reach(robot, tasks[k], at_[candidate]) || !has_room(robot, tasks[k], at_[candidate])) continue;
     const double work = problem_.work_time(robot, tasks[k]);
     made = arrival(robot, tasks[k], at_[candidate], work);
-    if (!may_join(made, tasks[k])) made.robot = -1;
+    const Added added{at_[candidate], tasks[k]};
+    if (!may_join(made, tasks[k]) || !keeps_length(robot, {&added, 1})) made.robot = -1;
   }
 }
 
@@ -308,7 +309,7 @@ void Placement::judge(int unit) {
   measure_works(tasks.size());
   double begin = ready_;
   for (const Part& part : team_) begin = std::max(begin, part.offer->arrive);
-  begin = timeline_.open(unit, begin);
+  begin = open_to_team(unit, begin);
   InsertionScore score(problem_.objective(), peak_);
   for (const Part& part : team_) score.add(*part.offer, begin, works_[part.task], growth(part));
   const double value = score.value(begin, timeline_.tail_after(unit, works_), lateness_of_team(unit, begin));

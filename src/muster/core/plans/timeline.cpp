@@ -25,6 +25,8 @@ Timeline::Timeline(const Problem& problem)
       has_openings_(problem.has_openings()),
       has_limits_(problem.has_time_limits()),
       has_gap_most_(false),
+      has_lasts_most_(problem.has_lasts_most()),
+      has_spans_(problem.has_spans()),
       has_tails_(problem.objective() == Objective::makespan),
       looks_back_(has_limits_ || has_tails_),
       routes_(problem.robots()),

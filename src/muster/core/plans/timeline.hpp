@@ -47,7 +47,8 @@ struct Labels {
 // propagated once through the part that it affects, in topological order [pearce2006]. A label strictly between those
 // of what comes before and after keeps it; labels are renewed in order of time at `commit`.
 //
-// Maximum gaps make cycles of lower bounds: where a problem has any, begins are the least fixpoint, found anew.
+// Maximum gaps, and greatest lengths of routes, make cycles of lower bounds: where a problem has any, begins are the
+// least fixpoint, found anew.
 class Timeline {
  public:
   explicit Timeline(const Problem& problem);
@@ -77,6 +78,13 @@ class Timeline {
   const std::vector<int>& route(int robot) const { return routes_[robot]; }
   int tasks_in(int robot) const { return static_cast<int>(routes_[robot].size()) - 2; }
   const Visit& stop(int robot, int at) const { return visits_[routes_[robot][at]]; }
+
+  // When a robot leaves a stop of its route as it is: its start no sooner than its end is soon enough after that.
+  double leave(int robot, int at) const { return at == 0 ? departure(robot) : stop(robot, at).leave; }
+  // When a robot is at a stop that it goes to from the one before as soon as it can.
+  double arrival(const Visit& visit) const {
+    return problem_.arrives(visit.robot, leave(visit.robot, visit.at - 1), visit.in);
+  }
 
   // What the prerequisites and dependants of a unit that is absent allow; those absent too pass on what they wait for.
   Labels labels_for(int unit);
@@ -186,8 +194,11 @@ class Timeline {
   bool forward();
   void backward();
   void renew_budget();
+  bool has_cycles() const { return has_gap_most_ || has_lasts_most_; }
   bool settle_cycles();
+  double departure(int robot) const;
   double earliest_begin(int unit);
+  double begin_of_spans(int unit, double earliest) const;
   double latest_begin(int unit);
   double longest_tail(int unit);
   std::span<const double> works_of(int unit);
@@ -198,7 +209,7 @@ class Timeline {
   void save(int unit);
 
   const Problem& problem_;
-  bool has_openings_, has_limits_, has_gap_most_, has_tails_;
+  bool has_openings_, has_limits_, has_gap_most_, has_lasts_most_, has_spans_, has_tails_;
   bool looks_back_;
   Arcs before_, behind_;       // by unit: prerequisites, dependants
   std::vector<Visit> visits_;  // starts, ends, then those of tasks

@@ -20,7 +20,7 @@ bool Timeline::settle() {
 }
 
 bool Timeline::settle_begins() {
-  if (has_gap_most_ && !(forward_.empty() && backward_.empty())) return settle_cycles();
+  if (has_cycles() && !(forward_.empty() && backward_.empty())) return settle_cycles();
   renew_budget();
   return forward();
 }
@@ -33,11 +33,20 @@ std::span<const double> Timeline::works_of(int unit) {
   return works_;
 }
 
+// A robot leaves its start when it is available, or so much before the end of its route as that may be at most.
+double Timeline::departure(int robot) const {
+  const Visit& start = visits_[robot];
+  if (!has_lasts_most_ || tasks_in(robot) == 0 || problem_.lasts_most(robot) == kNever) return start.leave;
+  const Visit& end = visits_[routes_[robot].back()];
+  return std::max(start.leave, problem_.arrives(robot, before(end).leave, end.in) - problem_.lasts_most(robot));
+}
+
 double Timeline::earliest_begin(int unit) {
+  const bool plain = !has_spans_ && !has_lasts_most_;
   double begin = ready(unit);
   for (const int number : nodes_[unit].visits) {
     const Visit& visit = visits_[number];
-    begin = std::max(begin, before(visit).leave + visit.in);
+    begin = std::max(begin, plain ? before(visit).leave + visit.in : arrival(visit));
   }
   if (has_gap_most_) {
     const auto work = works_of(unit);
@@ -45,7 +54,20 @@ double Timeline::earliest_begin(int unit) {
       if (present(arc.unit)) begin = std::max(begin, begin_of(arc.unit) - arc.within - work[arc.own]);
     }
   }
-  return open(unit, begin);
+  return has_spans_ ? begin_of_spans(unit, begin) : open(unit, begin);
+}
+
+// The first time from `earliest` on that openings allow, and at which all its robots can work through.
+double Timeline::begin_of_spans(int unit, double earliest) const {
+  for (double begin = open(unit, earliest);;) {
+    double later = begin;
+    for (const int number : nodes_[unit].visits) {
+      later = problem_.set_out(visits_[number].robot, later, work_[visits_[number].place]);
+    }
+    later = open(unit, later);
+    if (later == begin || later == kNever) return later;
+    begin = later;
+  }
 }
 
 double Timeline::latest_begin(int unit) {
@@ -53,8 +75,12 @@ double Timeline::latest_begin(int unit) {
   for (const int number : nodes_[unit].visits) {
     const Visit& visit = visits_[number];
     const Visit& next = behind(visit);
-    const double bound = next.latest - next.in - work_[visit.place];
+    const double bound = problem_.last_set_out(visit.robot, next.latest, next.in) - work_[visit.place];
     latest = std::min(latest, problem_.last_begin(visit.place, bound));
+  }
+  for (const int number : has_spans_ ? visits_of(unit) : std::span<const int>()) {
+    const Visit& visit = visits_[number];
+    latest = std::min(latest, problem_.last_set_out(visit.robot, latest + work_[visit.place], work_[visit.place]));
   }
   return latest;
 }
@@ -98,14 +124,21 @@ bool Timeline::keeps_bounds(int unit) const {
     const Visit& visit = visits_[number];
     if (!in_time(visit.leave, problem_.ends_by(visit.place))) return false;
     const Visit& next = behind(visit);
-    if (next.unit < 0 && !in_time(visit.leave + next.in, next.latest)) return false;
+    if (next.unit >= 0) continue;
+    const double over = problem_.arrives(visit.robot, visit.leave, next.in);
+    if (over == kNever || !in_time(over, next.latest)) return false;
   }
   return true;
 }
 
 void Timeline::queue_later(int unit) {
   for (const int number : nodes_[unit].visits) {
-    if (const int next = behind(visits_[number]).unit; next >= 0) queue_forward(next);
+    const Visit& visit = visits_[number];
+    if (const int next = behind(visit).unit; next >= 0) {
+      queue_forward(next);
+    } else if (has_lasts_most_ && problem_.lasts_most(visit.robot) < kNever) {
+      queue_forward(stop(visit.robot, 1).unit);
+    }
   }
   for (const Arc& arc : behind_[unit]) {
     if (present(arc.unit)) queue_forward(arc.unit);
@@ -145,7 +178,7 @@ bool Timeline::forward() {
       queue_later(unit);
     }
     possible = possible && keeps_bounds(unit);
-    if (has_gap_most_ && !possible) return false;
+    if (has_cycles() && !possible) return false;
   }
   return possible;
 }
@@ -170,7 +203,7 @@ void Timeline::backward() {
   }
 }
 
-// Where maximum gaps tie begins to each other in cycles, a fixpoint that is not the least may hold itself up. So begins
+// Where begins are tied to each other in cycles, a fixpoint that is not the least may hold itself up. So begins
 // rise from nothing, and latest begins fall from the end of time.
 bool Timeline::settle_cycles() {
   drop_queues();
@@ -190,8 +223,8 @@ bool Timeline::settle_cycles() {
 // Without cycles each unit is looked at about once. In a graph with cycles a fixpoint is found after each unit was
 // looked at some times, or there is none.
 void Timeline::renew_budget() {
-  const auto units = has_gap_most_ ? std::ranges::count_if(nodes_, [](const Node& n) { return !n.visits.empty(); })
-                                   : std::ssize(nodes_);
+  const auto units = has_cycles() ? std::ranges::count_if(nodes_, [](const Node& n) { return !n.visits.empty(); })
+                                  : std::ssize(nodes_);
   budget_ = 1000 + 64 * static_cast<int>(units);
 }
 
@@ -204,7 +237,8 @@ double Timeline::end_of_route(int robot) const {
   const auto& route = routes_[robot];
   if (route.size() == 2) return 0.0;
   const Visit& last = visits_[route[route.size() - 2]];
-  return problem_.makespan_includes_return() ? last.leave + visits_[route.back()].in : last.leave;
+  if (!problem_.makespan_includes_return()) return last.leave;
+  return problem_.arrives(robot, last.leave, visits_[route.back()].in);
 }
 
 double Timeline::end() const {
@@ -231,11 +265,10 @@ int Timeline::holder_of(int unit) const {
   double bound = -kNever;
   for (const int number : nodes_[unit].visits) {
     const Visit& visit = visits_[number];
-    const Visit& last = before(visit);
-    const double arrival = last.leave + visit.in;
-    if (arrival > bound) {
-      bound = arrival;
-      holder = last.unit;
+    const double arrives = arrival(visit);
+    if (arrives > bound) {
+      bound = arrives;
+      holder = before(visit).unit;
     }
   }
   for (const Arc& arc : before_[unit]) {

@@ -84,8 +84,9 @@ void Placement::try_transport_with(int robot, int pickup, int delivery) {
 void Placement::try_pickup_at(int robot, int at, int pickup, int delivery) {
   const Visit &last = timeline_.stop(robot, at), &next = timeline_.stop(robot, at + 1);
   Walk walk{robot, pickup, delivery, at, pickup, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
-  walk.pickup_begin = timeline_.open(
-      problem_.unit(pickup), std::max(ready_, leave(robot, at) + problem_.travel_time(robot, last.place, pickup)));
+  const double there = problem_.arrives(robot, leave(robot, at), problem_.travel_time(robot, last.place, pickup));
+  walk.pickup_begin =
+      open_to(problem_.unit(pickup), robot, std::max(ready_, there), problem_.work_time(robot, pickup));
   if (!timeline_.in_time(walk.pickup_begin, latest_)) return;
   walk.time = walk.pickup_end = walk.pickup_begin + problem_.work_time(robot, pickup);
   // The way there; what is left out of the route as it was, and the way on, follow with the delivery.
@@ -119,8 +120,9 @@ bool Placement::room_for_transport(const Walk& walk, int at) const {
 // Goes on to a stop of the route with the load on board. False: it would be too late there, or have no room.
 bool Placement::pass_stop(Walk& walk, int at) const {
   const Visit& visit = timeline_.stop(walk.robot, at);
-  const double arrive = walk.time + problem_.travel_time(walk.robot, walk.place, visit.place);
-  double begin = timeline_.open(visit.unit, arrive);
+  const double way = problem_.travel_time(walk.robot, walk.place, visit.place);
+  const double arrive = problem_.arrives(walk.robot, walk.time, way);
+  double begin = open_to(visit.unit, walk.robot, arrive, timeline_.work_of(visit.place));
   if (!may_call(walk.robot)) begin = std::max(begin, timeline_.begin_of(visit.unit));
   if (!timeline_.in_time(begin, latest_begin(walk.robot, at)) || !room_for_transport(walk, at)) return false;
   walk.time = begin + timeline_.work_of(visit.place);
@@ -144,14 +146,16 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
   };
   const double in = problem_.travel_time(robot, walk.place, delivery), work = problem_.work_time(robot, delivery);
   const double out = seconds(delivery, next);
-  const double arrive = std::max({second_ready_, walk.pickup_end + after_, walk.time + in});
-  const double begin = timeline_.open(problem_.unit(delivery), arrive);
+  const double arrive =
+      std::max({second_ready_, walk.pickup_end + after_, problem_.arrives(robot, walk.time, in)});
+  const double begin = open_to(problem_.unit(delivery), robot, arrive, work);
   if (!timeline_.in_time(begin, second_latest_)) return;
   // A pick-up that would end too long before its delivery begins later, if it may.
   const double later = std::max(0.0, begin - walk.pickup_end - within_);
   if (later > 0.0 && (!timeline_.in_time(walk.pickup_begin + later, latest_) || (at == walk.at && in > within_)))
     return;
-  if (!timeline_.in_time(begin + work + out, latest_begin(robot, at + 1))) return;
+  const double latest_end = problem_.last_set_out(robot, latest_begin(robot, at + 1), out);
+  if (!timeline_.in_time(begin + work, latest_end)) return;
   const bool beside = at == walk.at, empty = timeline_.tasks_in(robot) == 0;
   double growth = walk.growth + problem_.travel_usage(robot, walk.place, delivery) +
                   problem_.work_usage(robot, delivery) + usage(delivery, next);
@@ -175,7 +179,7 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
   offer.work = work;
   offer.in = takes - work;
   offer.arrive = begin;
-  offer.latest = next.latest - out;
+  offer.latest = latest_end;
   offer.out = 0.0;
   offer.onward = next.unit >= 0 || problem_.makespan_includes_return() ? out + next.tail : 0.0;
   offer.usage = before;
@@ -193,6 +197,7 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
   const double tail = std::max(second_tail_, walk.pickup_begin + tail_ - begin);
   const double value = score.value(begin, tail, late);
   if (value >= best_.score) return;
+  if (const Added added[] = {{walk.at, walk.pickup}, {at, delivery}}; !keeps_length(robot, added)) return;
   const Candidate candidate{value, growth, before,  begin + std::max(tail, work + offer.onward),
                             takes, robot,  walk.at, at};
   if (may_call(robot)) return keep(Candidate(candidate));
