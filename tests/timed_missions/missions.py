@@ -15,6 +15,7 @@ IGNORED = (
     "window",
     "deadline",
     "shift",
+    "duty",
     "team",
     "relation",
     "min-tasks",
@@ -44,6 +45,7 @@ def timed_mission(seed, *, tasks=None, robots=None):
     _relate(random, made_tasks, has, robots)
     random.shuffle(made_tasks)
     made_robots = _with_least(Random(f"least {seed}"), made_robots)
+    made_robots = _resting(Random(f"rests {seed}"), made_robots)
     suitability = {kind: {task: random.choice((0.4, 0.7, 1.0, 1.0)) for task in KINDS} for kind in TYPES}
     mission = Mission(
         name=f"timed-{seed}",
@@ -156,6 +158,12 @@ def _with_least(random, robots):
     if random.random() > 0.35:
         return robots
     return tuple(replace(robot, min_tasks=random.choice((0, 1, 2, 2, 3))) for robot in robots)
+
+
+def _resting(random, robots):
+    """In some missions robots have several shifts, or duties of a longest time."""
+    has = {rule for rule in ("shifts", "duty") if random.random() < 0.25}
+    return tuple(_with_rests(random, robot, has) for robot in robots)
 
 
 def _task(random, k, tasks, robots, has):

@@ -16,6 +16,7 @@ from muster.mission.model import Task
 from muster.mission.plan import Plan
 from muster.model.problem import Problem
 from muster.model.rules.rule import ROUNDING
+from muster.model.rules.shift import with_end
 
 
 def with_fixed_routes(problem: Problem, plan: Plan) -> Problem:
@@ -95,7 +96,7 @@ def _within_shifts(problem: Problem) -> Problem:
     if not limited or core.Inspection(problem.core, fixed).admissible:
         return problem
     rules = replace(problem.mission.rules, objective="makespan", makespan_includes_return=True)
-    robots = tuple(replace(robot, available_until_s=None) for robot in problem.robots)
+    robots = tuple(with_end(robot, None) for robot in problem.robots)
     endless = replace(problem, mission=replace(problem.mission, rules=rules), robots=robots)
     end_s = core.Inspection(endless.core, fixed).makespan
     if end_s is None:
@@ -103,7 +104,7 @@ def _within_shifts(problem: Problem) -> Problem:
     longer = tuple(
         robot
         if robot.available_until_s is None
-        else replace(robot, available_until_s=max(robot.available_until_s, end_s))
+        else with_end(robot, max(robot.available_until_s, end_s))
         for robot in problem.robots
     )
     return replace(problem, robots=longer)

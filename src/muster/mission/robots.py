@@ -100,7 +100,6 @@ class Robot(Checked):
         default=(),
         if_used=True,
         rule="shift",
-        planned=False,
     )
     min_tasks: int = spec(
         Whole(), "it does at least so many tasks, or none at all", default=0, if_used=True, rule="min-tasks"
@@ -111,7 +110,6 @@ class Robot(Checked):
         default=None,
         if_used=True,
         rule="duty",
-        planned=False,
     )
     heading_deg: float = spec(Number(), "heading at the start, from east, anticlockwise", default=0.0)
     radius_m: float = spec(Number(minimum=0), "radius of its body", default=0.0)

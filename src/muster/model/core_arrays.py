@@ -26,6 +26,8 @@ def core_arrays(problem: Question, profiles: Sequence[LegTimes]) -> dict[str, An
         "ends_by": _limits(model.ends_by),
         "due": _limits(model.due),
         "over_by": _limits(model.over_by),
+        "lasts_most": _limits(model.lasts_most),
+        "spans": [model.spans(i) for i in range(model.robots)] if model.parts.spans else [],
         "least_stops": model.least_stops if model.parts.least_stops else np.empty(0, dtype=np.int32),
         **_gaps(model),
         **_crews(model, problem.kinds),

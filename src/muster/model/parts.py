@@ -68,6 +68,8 @@ class Parts:
     openings: dict[int, Openings] = field(default_factory=dict)
     ends_by: dict[int, float] = field(default_factory=dict)
     over_by: dict[int, float] = field(default_factory=dict)
+    lasts_most: dict[int, float] = field(default_factory=dict)
+    spans: dict[int, Openings] = field(default_factory=dict)
     gaps: dict[int, dict[int, tuple[float, float]]] = field(default_factory=dict)
     together: list[tuple[int, int]] = field(default_factory=list)
     same_crew: dict[int, set[int]] = field(default_factory=dict)
@@ -99,6 +101,19 @@ class Parts:
         if i in self.free:
             return
         self.over_by[i] = min(latest_s, self.over_by.get(i, math.inf))
+
+    def lasts(self, i: int, most_s: float) -> None:
+        """From leaving its start to the end of its route robot i takes at most so long, however late it leaves."""
+        if i in self.free:
+            return
+        self.lasts_most[i] = min(most_s, self.lasts_most.get(i, math.inf))
+
+    def rests(self, i: int, spans: Iterable[tuple[float, float | None]]) -> None:
+        """Robot i drives and works in these spans alone: each leg and each work within one of them."""
+        if i in self.free:
+            return
+        own = sorted((begins, math.inf if ends is None else ends) for begins, ends in spans)
+        self.spans[i] = _common(self.spans[i], own) if i in self.spans else own
 
     def follows(self, j: int, before: int, least_s: float = 0.0, most_s: float = math.inf) -> None:
         """Task j is done only if the one before it is, and begins so long after that ends, at least and at most."""

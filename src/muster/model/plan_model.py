@@ -59,6 +59,38 @@ class PlanModel:
         return _filled(self.parts.over_by, self.robots, math.inf)
 
     @cached_property
+    def lasts_most(self) -> Floats:
+        """(m,) how long a robot is under way at the most, from leaving its start to the end of its route; inf: ever."""
+        return _filled(self.parts.lasts_most, self.robots, math.inf)
+
+    def spans(self, i: int) -> Openings:
+        """When robot i drives and works; empty: at any time."""
+        return self.parts.spans.get(i, [])
+
+    def set_out(self, i: int, times: Floats, seconds: Floats) -> Floats:
+        """From when robot i, free at some times, is busy for so long without a rest; inf: never again."""
+        if i not in self.parts.spans:
+            return times
+        begins = np.full(np.broadcast(times, seconds).shape, math.inf)
+        for first, last in reversed(self.spans(i)):
+            tried = np.maximum(times, first)
+            begins = np.where(tried + seconds <= last * (1 + ROUNDING), tried, begins)
+        return begins
+
+    def busy_until(self, i: int, times: Floats, seconds: Floats) -> Floats:
+        """When robot i, free at some times, has driven and worked so long at the earliest, as often as it rests."""
+        times, left = np.broadcast_arrays(np.asarray(times, np.float64), np.asarray(seconds, np.float64))
+        until = times + left
+        open_yet = np.isfinite(until) & (left > 0)
+        for first, last in self.spans(i):
+            start = np.maximum(times, first)
+            ends = open_yet & (start + left <= last)
+            until = np.where(ends, start + left, until)
+            open_yet &= ~ends
+            left = np.where(open_yet, left - np.maximum(0.0, last - start), left)
+        return np.where(open_yet, math.inf, until) if self.spans(i) else until
+
+    @cached_property
     def capacity(self) -> Floats:
         """(m,) the most usage of a robot; inf: without an end."""
         return _filled(self.parts.capacity, self.robots, math.inf)

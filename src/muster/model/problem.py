@@ -554,6 +554,13 @@ class Problem:
         apart = self._entries[k, to][None] - self._exits[k, places][:, None]
         return np.asarray(profile.seconds(metres, np.abs(apart[..., 2]), np.linalg.norm(apart, axis=2)))
 
+    def back(self, i: int, end_s: float, j: int) -> float:
+        """When robot i, which ends work on its last task j at a time, is at the end of its route."""
+        if self.robots[i].place_at_end(self.mission.rules) is None:
+            return end_s
+        way = self.travel_seconds(i, [j], [self.end(i)])[0]
+        return float((self.model.set_out(i, np.array([end_s]), way) + way)[0])
+
     def work_usage(self, i: int) -> Floats:
         """(n,) usage of robot i for the work of each task."""
         return self.work_seconds(i) if self.in_time else self._work_metres(i)

@@ -157,12 +157,11 @@ def _few_ways(problem: Problem) -> bool:
 
 
 def _least_times(problem: Problem, i: int) -> tuple[Floats, Floats]:
-    """(n,) seconds until robot i can be at each task, and (n,) from there to the end of its route; or less."""
+    """(n,) seconds from the start of robot i to each task, and (n,) from there to the end of its route; or less."""
     if not _few_ways(problem):
         nothing = np.zeros(len(problem.tasks))
-        return nothing + problem.robots[i].available_from_s, nothing
-    there, back = _least_ways(problem, i, problem.travel_seconds, problem.work_seconds(i))
-    return there + problem.robots[i].available_from_s, back
+        return nothing, nothing
+    return _least_ways(problem, i, problem.travel_seconds, problem.work_seconds(i))
 
 
 def _least_ways(problem: Problem, i: int, legs: Legs, work: Floats) -> tuple[Floats, Floats]:

@@ -32,8 +32,9 @@ class Limits:
         (m, n) the least usage of any route of a robot with a task in it; inf where there is none.
     usable
         (m, n) the pairs that may be in an admissible plan, as far as is known.
-    arrival, home
-        (m, n) seconds until a robot can be at a task, and from there to the end of its route; empty: nothing is timed.
+    way, home
+        (m, n) the least seconds from a robot's start to a task, and from there to the end of its route; empty: nothing
+        is timed.
     ready
         (n,) seconds until everything is there that work on a task needs, whoever does it; its windows not looked at.
     begin
@@ -47,7 +48,7 @@ class Limits:
     problem: Problem
     usage: Floats
     usable: Bools
-    arrival: Floats
+    way: Floats
     home: Floats
     ready: Floats
     begin: Floats
@@ -60,7 +61,14 @@ class Limits:
 
     @property
     def is_timed(self) -> bool:
-        return bool(self.arrival.size)
+        return bool(self.way.size)
+
+    @cached_property
+    def arrival(self) -> Floats:
+        """(m, n) seconds until a robot can be at a task; empty: nothing is timed."""
+        begins = [np.array(robot.available_from_s) for robot in self.problem.robots]
+        rows = [self.rules.busy_until(i, begins[i], way) for i, way in enumerate(self.way)]
+        return np.array(rows).reshape(self.way.shape)
 
     @cached_property
     def work(self) -> Floats:
@@ -89,12 +97,34 @@ class Limits:
     def pair_begin(self) -> Floats:
         """(m, n) seconds until a robot begins work on a task; inf: never."""
         columns = [self.rules.next_begin(j, self.pair_ready[:, j]) for j in range(len(self.problem.tasks))]
-        return np.maximum(np.array(columns).T.reshape(self.usable.shape), self.begin)
+        begin = np.maximum(np.array(columns).T.reshape(self.usable.shape), self.begin)
+        for i in self.rules.parts.spans:
+            begin[i] = self.rules.set_out(i, begin[i], self._pair_work[i])
+        return begin
 
     @cached_property
     def pair_end(self) -> Floats:
         """(m, n) seconds until a robot has ended work on a task, with its team."""
-        return self.pair_begin + np.maximum(self.work, self.shortest_work)
+        return self.pair_begin + self._pair_work
+
+    @cached_property
+    def _pair_work(self) -> Floats:
+        """(m, n) seconds of work of a robot on a task, with its team."""
+        return np.maximum(self.work, self.shortest_work)
+
+    @cached_property
+    def over(self) -> Floats:
+        """(m, n) seconds until a robot is at the end of its route, of any with a task in it."""
+        rows = [
+            self.rules.busy_until(i, end, home)
+            for i, (end, home) in enumerate(zip(self.pair_end, self.home, strict=True))
+        ]
+        return np.array(rows).reshape(self.usable.shape)
+
+    @cached_property
+    def under_way(self) -> Floats:
+        """(m, n) seconds from when a robot leaves its start until then."""
+        return np.asarray(self.way + self._pair_work + self.home)
 
     @cached_property
     def alone(self) -> Bools:
@@ -150,7 +180,7 @@ class Limits:
             return self  # no pair was excluded before
         if (word, at) not in self._freed and self.usable.size * max(self.usable.shape) <= _MOST_NARROWED:
             free = replace(self.problem, freed=frozenset({(word, at)}), known=self.problem.measured)
-            self._freed[word, at] = _narrowed(_unnarrowed(free, self.usage, self.arrival, self.home))
+            self._freed[word, at] = _narrowed(_unnarrowed(free, self.usage, self.way, self.home))
         return self._freed.get((word, at))
 
     @cached_property
@@ -187,14 +217,14 @@ def narrowed(
     """Narrow the bounds until nothing changes: each pair that is not possible may make others begin later.
 
     `timed` tells whether times are wanted even where none matter. `ways` gives for a robot the
-    seconds until it can be at each task, and from there to the end of its route.
+    least seconds from its start to each task, and from there to the end of its route.
     """
     if not (timed or problem.has_timed_rules):
         none = np.empty((0, 0))
         limits = _unnarrowed(problem, usage, none, none)
         return replace(limits, usable=limits.possible(), steps=(limits,))
     found = [ways(problem, i) for i in range(len(problem.robots))]
-    return _narrowed(_unnarrowed(problem, usage, np.array([a for a, _ in found]), np.array([h for _, h in found])))
+    return _narrowed(_unnarrowed(problem, usage, np.array([way for way, _ in found]), np.array([h for _, h in found])))
 
 
 def untimed(problem: Problem) -> Limits:
@@ -203,9 +233,9 @@ def untimed(problem: Problem) -> Limits:
     return Limits(problem, none, none.astype(np.bool_), none, none, at_once, at_once, (None,) * len(problem.tasks))
 
 
-def _unnarrowed(problem: Problem, usage: Floats, arrival: Floats, home: Floats) -> Limits:
+def _unnarrowed(problem: Problem, usage: Floats, way: Floats, home: Floats) -> Limits:
     at_once = np.zeros(len(problem.tasks))
-    return Limits(problem, usage, problem.allowed, arrival, home, at_once, at_once, (None,) * len(problem.tasks))
+    return Limits(problem, usage, problem.allowed, way, home, at_once, at_once, (None,) * len(problem.tasks))
 
 
 def _narrowed(limits: Limits) -> Limits:

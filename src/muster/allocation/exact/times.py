@@ -15,7 +15,7 @@ import numpy as np
 from ortools.sat.python import cp_model
 
 from muster.allocation.bounds.earliest_times import in_time
-from muster.allocation.exact.circuits import Circuits
+from muster.allocation.exact.circuits import Circuits, Leg
 from muster.allocation.exact.costs import Costs
 from muster.allocation.exact.goods import most_seconds
 
@@ -35,25 +35,66 @@ class Times:
         begins = [self._model.new_int_var(0, longest, "") for _ in rules.units]
         self.begin = [begins[u] for u in rules.unit]
         self.end = [self._model.new_int_var(0, longest, "") for _ in circuits.tasks]
+        bound = [i for i in circuits.robots if rules.spans(i) or math.isfinite(rules.lasts_most[i])]
+        self._over = {i: self._model.new_int_var(0, longest, "") for i in bound}
+        self._leave = {i: self._model.new_int_var(int(self._ready[i]), longest, "") for i in bound}
         self._follow_routes()
+        self._end_routes()
         self._follow_prerequisites()
         self._keep_windows()
-        self._keep_shifts()
 
     def _latest_base(self) -> float:
         """No time is later than this by more than travel and work of all tasks: the latest that all begins from."""
         rules = self._rules
         opens = (window[0] for windows in rules.openings for window in windows)
         lags = sum(after for j in self._circuits.tasks for _, after, _ in rules.gaps(j))
-        return float(max(chain(self.available, opens))) + lags
+        spans = (span[0] for i in self._circuits.robots for span in rules.spans(i))
+        return float(max(chain(self.available, opens, spans))) + lags
 
     def _follow_routes(self) -> None:
         circuits, model = self._circuits, self._model
         for (i, j), does in circuits.does.items():
             model.add(self.end[j] >= self.begin[j] + int(self.costs.work[i, j])).only_enforce_if(does)
+            self._keep_to_spans(i, self.begin[j], self.end[j], does)
         for (i, a, b), leg in circuits.onward():
-            before = int(self._ready[i]) if a == circuits.start else self.end[a]
-            model.add(self.begin[b] >= before + circuits.travel(self.costs, (i, a, b))).only_enforce_if(leg)
+            start = self._leave.get(i, int(self._ready[i]))
+            self._drive((i, a, b), start if a == circuits.start else self.end[a], self.begin[b], leg)
+
+    def _drive(self, key: Leg, free: Any, arrives: Any, leg: Any) -> None:
+        """A robot that is free at a place comes to another: without a rest on the way."""
+        way = self._circuits.travel(self.costs, key)
+        if self._rules.spans(key[0]):
+            leaves = self._model.new_int_var(0, self.costs.longest, "")
+            self._model.add(leaves >= free).only_enforce_if(leg)
+            self._keep_to_spans(key[0], leaves, leaves + way, leg)
+            free = leaves
+        self._model.add(arrives >= free + way).only_enforce_if(leg)
+
+    def _keep_to_spans(self, i: int, begin: Any, end: Any, holds: Any) -> None:
+        """What a robot that rests does stands within one of its spans."""
+        model, spans = self._model, self._rules.spans(i)
+        chosen = [model.new_bool_var("") for _ in spans]
+        for (first, last), one in zip(spans, chosen, strict=True):
+            model.add(begin >= self._down(first)).only_enforce_if(one)
+            model.add(end <= self._at_most(last)).only_enforce_if(one)
+        if spans:
+            model.add_bool_or([*chosen, holds.negated()])
+
+    def _end_routes(self) -> None:
+        """Routes are over in time, and soon enough after they are left."""
+        model, rules = self._model, self._rules
+        for (i, j, end), leg in self._circuits.homeward():
+            if i in self._over:
+                self._drive((i, j, end), self.end[j], self._over[i], leg)
+            if math.isfinite(rules.over_by[i]):
+                model.add(self._back(i, j, end) <= self._at_most(rules.over_by[i])).only_enforce_if(leg)
+            if math.isfinite(rules.lasts_most[i]):
+                most = self._up(float(rules.lasts_most[i]))
+                model.add(self._over[i] - self._leave[i] <= most).only_enforce_if(leg)
+
+    def _back(self, i: int, j: int, end: int) -> Any:
+        """When a robot is at its end, to which it goes from a task."""
+        return self._over.get(i, self.end[j] + self._circuits.travel(self.costs, (i, j, end)))
 
     def _follow_prerequisites(self) -> None:
         circuits, model = self._circuits, self._model
@@ -87,13 +128,6 @@ class Times:
                 allowed = cp_model.Domain.from_intervals([span for span in spans if span[0] <= span[1]])
                 model.add_linear_expression_in_domain(self.begin[j], allowed).only_enforce_if(done)
 
-    def _keep_shifts(self) -> None:
-        for (i, j, end), leg in self._circuits.homeward():
-            until = self._rules.over_by[i]
-            if math.isfinite(until):
-                home = self.end[j] + self._circuits.travel(self.costs, (i, j, end))
-                self._model.add(home <= self._at_most(until)).only_enforce_if(leg)
-
     def _down(self, seconds: float) -> int:
         return math.floor(seconds * self.scale.units)
 
@@ -117,7 +151,7 @@ class Times:
         for (i, j, end), leg in circuits.homeward() if with_return else ():
             way = circuits.travel(self.costs, (i, j, end))
             busy[i].append(way * leg)
-            model.add(makespan >= self.end[j] + way).only_enforce_if(leg)
+            model.add(makespan >= self._back(i, j, end)).only_enforce_if(leg)
         for ended in self.end:
             model.add(makespan >= ended)
         for terms in busy:

@@ -17,7 +17,7 @@ from muster.model.problem import Problem
 from muster.model.rules import RULES
 from muster.model.rules.deadline import too_late
 from muster.model.rules.rule import InPlan
-from muster.model.rules.shift import beyond
+from muster.model.rules.shift import beyond, with_end
 from muster.model.rules.window import closed
 
 _RELAXED = {rule.word: rule for rule in RULES if rule.lifted_late}
@@ -180,13 +180,17 @@ class TimedPlaces(TimedTeams):
         return not any(core.Inspection(alone.core, routes).admissible for routes in own)
 
     def _without(self, words: Sequence[str]) -> Problem:
-        """The problem in which some rules do not hold; windows still open, and the last ones do not close."""
+        """The problem in which some rules do not hold; windows still open, and the last ones do not close.
+
+        So with shifts: robots rest between them, and the last ones do not end.
+        """
         problem = self.problem
         if not words:
             return problem
         tasks = tuple(map(_never_closed, problem.tasks)) if "window" in words else problem.tasks
-        ignored = (*problem.ignored, *(word for word in words if word != "window"))
-        return replace(problem, ignored=ignored, tasks=tasks, known=problem.measured)
+        robots = tuple(with_end(robot, None) for robot in problem.robots) if "shift" in words else problem.robots
+        ignored = (*problem.ignored, *(word for word in words if word not in ("window", "shift")))
+        return replace(problem, ignored=ignored, tasks=tasks, robots=robots, known=problem.measured)
 
     def _no_order(self, i: int, j: int, places: list[Place]) -> Outcome:
         """Why no place is left whatever the times and capacities."""
@@ -241,11 +245,7 @@ class TimedPlaces(TimedTeams):
 
     def _route_end(self, found: core.Inspection, i: int, route: list[int]) -> float:
         """When robot i is at the end of its route."""
-        problem = self.problem
-        end = stop_of(found, i, len(route) - 1)[2]
-        if problem.robots[i].place_at_end(problem.mission.rules) is None:
-            return end
-        return end + float(problem.travel_seconds(i, [route[-1]], [problem.end(i)])[0, 0])
+        return self.problem.back(i, stop_of(found, i, len(route) - 1)[2], route[-1])
 
     # --- places ------------------------------------------------------------------------------------------------------
 

@@ -92,7 +92,7 @@ def _after(limits: Limits, i: int, a: int, b: int) -> str:
     late = closed(problem, b, "begins at", ready) or too_late(problem, b, end)
     if late:
         return f"with {first} first, {then} {late}"
-    late = beyond(problem, i, end + float(limits.home[i, b]))
+    late = beyond(problem, i, float(problem.model.busy_until(i, np.array(end), limits.home[i, b])))
     return f"with {first} first and then {then}, {late}" if late else ""
 
 

@@ -201,10 +201,7 @@ def _times(opened: Problem, routes: Routes, found: core.Inspection, at: int, of:
     """When work on a task begins and ends, and when its robot's route does."""
     route = routes[at]
     _, begin, end = stop_of(found, at, route.index(of))
-    over = stop_of(found, at, len(route) - 1)[2]
-    if opened.robots[at].place_at_end(opened.mission.rules) is not None:
-        over += float(opened.travel_seconds(at, [route[-1]], [opened.end(at)])[0, 0])
-    return begin, end, over
+    return begin, end, opened.back(at, stop_of(found, at, len(route) - 1)[2], route[-1])
 
 
 def _needed(
@@ -227,7 +224,7 @@ def _needed(
     if end > rules.ends_by[j] * (1 + ROUNDING):
         changes["deadline"] = LaterDeadline(float(rules.ends_by[j]), end, float(limits.pair_end[at, of]))
     if over > rules.over_by[i] * (1 + ROUNDING):
-        least = float(limits.pair_end[at, of] + limits.home[at, of])
+        least = float(limits.over[at, of])
         changes["shift"] = LongerShift(float(rules.over_by[i]), over, least, moments(problem, over)[0])
     now = remedy.capacity.now
     used = inspection.usages[at] / (1.0 - problem.mission.rules.capacity_reserve)

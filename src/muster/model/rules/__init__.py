@@ -11,6 +11,7 @@ from muster.model.rules.action import Action
 from muster.model.rules.battery import Battery
 from muster.model.rules.capacity import Capacity
 from muster.model.rules.deadline import Deadline
+from muster.model.rules.duty import Duty
 from muster.model.rules.load import Load
 from muster.model.rules.lock import Lock
 from muster.model.rules.min_tasks import MinTasks
@@ -37,6 +38,7 @@ RULES: tuple[Rule, ...] = (
     Window(),
     Deadline(),
     Shift(),
+    Duty(),
     Team(),
     Relation(),
     Capacity(),

@@ -1,4 +1,4 @@
-"""A robot's route, the way to its end included, ends by the end of the robot's shift."""
+"""A robot drives and works in its shifts alone; its route, the way to its end included, ends by the last one's end."""
 
 from __future__ import annotations
 
@@ -53,11 +53,11 @@ class LongerShift(Change):
         return f"{self.short}, {longer(self.seconds)} longer: {known_least(self.until_s, self.at_least_s)}"
 
     def robot(self, robot: Robot) -> Robot:
-        return replace(robot, available_until_s=self.until_s)
+        return with_end(robot, self.until_s)
 
 
 class Shift(Rule):
-    """The end of the route is at most `available_until_s`."""
+    """The end of the route is at most `available_until_s`; legs and work are each within one of `shifts_s`, if any."""
 
     word: ClassVar[str] = "shift"
     asked = ("shift",)
@@ -72,29 +72,32 @@ class Shift(Rule):
         for i, robot in enumerate(problem.robots):
             if robot.available_until_s is not None:
                 parts.is_over(i, robot.available_until_s)
+            if robot.shifts_s:  # the end of the last one is that of the route
+                parts.rests(i, (*robot.shifts_s[:-1], (robot.shifts_s[-1][0], None)))
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
-        return float(problem.model.over_by[i])
+        return float(problem.model.over_by[i]), tuple(problem.model.spans(i))
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.is_timed:
             return None
         until = limits.rules.over_by[:, None]
-        return np.asarray(limits.pair_end + limits.home <= until * (1 + ROUNDING))
+        return np.asarray(limits.over <= until * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         limits = outlook.limits
-        if not limits.is_timed or beyond(problem, i, _end(limits, i, j)) is None:
+        if not limits.is_timed or beyond(problem, i, float(limits.over[i, j])) is None:
             return None
         free = limits.without(self.word, i)
         (until,) = moments(problem, float(problem.model.over_by[i]))
-        late = None if free is None else beyond(problem, i, _end(free, i, j))
+        late = None if free is None else beyond(problem, i, float(free.over[i, j]))
         return late or f"what it waits for is too late for its shift, which ends at {until}"
 
 
-def _end(limits: Limits, i: int, j: int) -> float:
-    """A time before which no route of robot i with task j ends."""
-    return float(limits.pair_end[i, j] + limits.home[i, j])
+def with_end(robot: Robot, until_s: float | None) -> Robot:
+    """Return the robot with another end of its only shift, or of its last one."""
+    last = tuple((begins, until_s) for begins, _ in robot.shifts_s[-1:])
+    return replace(robot, available_until_s=until_s, shifts_s=(*robot.shifts_s[:-1], *last))
 
 
 def beyond(problem: Question, i: int, end: float) -> str | None:

@@ -1,0 +1,85 @@
+"""A robot is under way for no longer than its longest duty: from leaving its start to the end of its route."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from muster import core
+from muster.mission.model import Robot
+from muster.model.parts import Parts
+from muster.model.rules.rule import (
+    ROUNDING,
+    Bools,
+    Change,
+    Limits,
+    Outlook,
+    Question,
+    Routes,
+    Rule,
+    first_robot,
+)
+from muster.model.rules.times import spans
+
+
+@dataclass(frozen=True)
+class LongerDuty(Change):
+    """A duty without an end."""
+
+    @property
+    def plain(self) -> None:
+        return None
+
+    @property
+    def short(self) -> str:
+        return "a duty of any length"
+
+    def robot(self, robot: Robot) -> Robot:
+        return replace(robot, longest_duty_s=None)
+
+
+class Duty(Rule):
+    """A route ends at most `longest_duty_s` after its robot leaves its start, as late as that demands."""
+
+    word: ClassVar[str] = "duty"
+    asked = ("duty",)
+    lifted_late = True
+
+    def asks(self, problem: Question) -> Mapping[str, str | None]:
+        longest = problem.model.lasts_most
+        return {"duty": first_robot(problem, "longest_duty_s", lambda i: np.isfinite(longest[i]))}
+
+    def compile(self, problem: Question, parts: Parts) -> None:
+        for i, robot in enumerate(problem.robots):
+            if robot.longest_duty_s is not None:
+                parts.lasts(i, robot.longest_duty_s)
+
+    def of_robot(self, problem: Question, i: int) -> Hashable:
+        return float(problem.model.lasts_most[i])
+
+    def possible(self, limits: Limits) -> Bools | None:
+        longest = limits.rules.lasts_most
+        if not limits.is_timed or not np.isfinite(longest).any():
+            return None
+        return np.asarray(limits.under_way <= longest[:, None] * (1 + ROUNDING))
+
+    def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
+        limits = outlook.limits
+        if not limits.is_timed:
+            return None
+        least, longest = float(limits.under_way[i, j]), float(problem.model.lasts_most[i])
+        if math.isinf(least) or least <= longest * (1 + ROUNDING):
+            return None
+        takes, most = spans(least, longest)
+        return f"takes at least {takes} from its start to the end of its route, its longest duty is {most}"
+
+    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
+        return "with it no times keep every robot within its longest duty"
+
+    def lifted(self, problem: Question, i: int) -> Change | None:
+        return LongerDuty() if math.isfinite(problem.model.lasts_most[i]) else None
+
