@@ -5,12 +5,19 @@ numbers, in mission order. All methods are the simplest that are right; nothing 
 """
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 from tests.timed_missions.travel import OwnTravel
 
 ROUNDING = 1e-9
 PLURALS = {"prerequisites": "prerequisite", "skills": "skill"}
+
+
+def with_last_end(robot, until_s):
+    """The robot with another end of its only shift, or of its last one; None: it has no end."""
+    last = tuple((begins, until_s) for begins, _ in robot.shifts_s[-1:])
+    return replace(robot, available_until_s=until_s, shifts_s=(*robot.shifts_s[:-1], *last))
 
 
 class Meaning:
@@ -133,7 +140,7 @@ class Meaning:
                 return max(at, begin)
         return None
 
-    def _moved(self, i, at, seconds):
+    def moved(self, i, at, seconds):
         """When the robot has gone a way for which it is free at a moment; None: never."""
         leaves = self._next_in_shift(i, at, seconds)
         return None if leaves is None else leaves + seconds
@@ -184,7 +191,7 @@ class Meaning:
         for i, route in enumerate(routes):
             free, here = leaves[i], None
             for j in route:
-                yield self.unit_of[j], self._moved(i, free, self._travel.seconds(i, here, self.tasks[j]))
+                yield self.unit_of[j], self.moved(i, free, self._travel.seconds(i, here, self.tasks[j]))
                 free, here = begins[self.unit_of[j]] + durations[j], self.tasks[j]
 
     def _leave_later(self, routes, ends, leaves, *, way_home):
@@ -203,7 +210,7 @@ class Meaning:
         """When a robot's route, which has tasks, ends; None: never."""
         if not self._travel.has_end(i):
             return ends[route[-1]]
-        return self._moved(i, ends[route[-1]], self.way_home(i, route, "seconds"))
+        return self.moved(i, ends[route[-1]], self.way_home(i, route, "seconds"))
 
     @staticmethod
     def teams(routes):

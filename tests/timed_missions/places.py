@@ -5,9 +5,9 @@ from dataclasses import replace
 from functools import cache
 from itertools import product
 
-from tests.timed_missions.meaning import Meaning
+from tests.timed_missions.meaning import Meaning, with_last_end
 
-LIMITS = ("window", "deadline", "shift", "capacity", "min-tasks")
+LIMITS = ("window", "deadline", "shift", "duty", "capacity", "min-tasks")
 """The rules that are looked at one after the other: each is named where it leaves no place, beside those before it."""
 
 PAIRS = ("skill", "suitability", "lock")
@@ -53,12 +53,14 @@ class Places:
         return [routes for routes in self.all if not meaning.faults(routes)]
 
     def meaning_without(self, words):
-        """The rules but those of these words; windows open when they do, and the last does not close."""
-        if "window" not in words:
-            return Meaning(self.mission, ignored=(*self.ignored, *words))
-        tasks = tuple(replace(task, window_s=_never_closed(task.window_s)) for task in self.mission.tasks)
-        others = [word for word in words if word != "window"]
-        return Meaning(replace(self.mission, tasks=tasks), ignored=(*self.ignored, *others))
+        """The rules but those of these words; windows and shifts begin when they do, and the last does not end."""
+        tasks, robots = self.mission.tasks, self.mission.robots
+        if "window" in words:
+            tasks = tuple(replace(task, window_s=_never_closed(task.window_s)) for task in tasks)
+        if "shift" in words:
+            robots = tuple(with_last_end(robot, None) for robot in robots)
+        others = [word for word in words if word not in ("window", "shift")]
+        return Meaning(replace(self.mission, tasks=tasks, robots=robots), ignored=(*self.ignored, *others))
 
     def is_true(self, word):
         """Whether the rule keeps robot i from the task, and is the first of the limits that leaves no place."""
@@ -113,11 +115,12 @@ class Places:
         at = route.index(self.j)
         last = self.mission.tasks[route[at - 1]] if at else None
         begin = ends[route[at - 1]] if at else self.mission.robots[self.i].available_from_s
-        return begin + self.meaning._travel.seconds(self.i, last, self.mission.tasks[self.j])
+        meaning = self.meaning_without(("shift",))
+        return meaning.moved(self.i, begin, self.meaning._travel.seconds(self.i, last, self.mission.tasks[self.j]))
 
     def route_end(self, routes, ends):
         """When robot i is at the end of its route."""
-        return ends[routes[self.i][-1]] + self.meaning.way_home(self.i, routes[self.i], "seconds")
+        return self.meaning_without(("shift",)).back(self.i, routes[self.i], ends)
 
     def usages(self, *words):
         """What robot i uses at each place that keeps all rules but these."""
@@ -290,6 +293,7 @@ SENTENCES = (
     (r"fits no part of the team: .+", _as_the_word),
     (r"(lacks .+|type \S+ scores .+|only .+ may do it)", _as_the_word),
     (r"there is no way (to it|for another robot of its team)", _as_the_word),
+    (r"with it no times keep every robot within its longest duty", _as_the_word),
     (r"with it the route of another robot would end after its shift", _as_the_word),
     (r"at no place in its route are all (windows|deadlines) kept", _as_the_word),
     (r"with its team one of the robots would need more than its capacity", _as_the_word),

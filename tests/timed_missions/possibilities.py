@@ -5,10 +5,15 @@ from dataclasses import replace
 
 from muster.mission.model import Lag
 from tests.timed_missions.every_plan import EveryPlan
-from tests.timed_missions.meaning import Meaning
+from tests.timed_missions.meaning import Meaning, with_last_end
 from tests.timed_missions.places import CLOSE, SECONDS, near, seconds
 
-WITHOUT = {"window": {"window_s": ()}, "deadline": {"deadline_s": None}, "shift": {"available_until_s": None}}
+WITHOUT = {
+    "window": {"window_s": ()},
+    "deadline": {"deadline_s": None},
+    "capacity": {"work_capacity": None},
+    "duty": {"longest_duty_s": None},
+}
 
 
 class Possibilities:
@@ -60,7 +65,7 @@ class Possibilities:
             changed = replace(
                 self.mission,
                 tasks=tuple(_free(one, without, tasks, ("window", "deadline")) for one in self.mission.tasks),
-                robots=tuple(_free(one, without, robots, ("shift", "capacity")) for one in self.mission.robots),
+                robots=tuple(_free(one, without, robots, ("shift", "duty", "capacity")) for one in self.mission.robots),
             )
             meaning = Meaning(changed, ignored=self.ignored)
             plans = EveryPlan(meaning).admissible
@@ -105,8 +110,9 @@ def _free(one, without, names, own):
     changes = {}
     for word in own if one.id in names else ():
         if word in without:
-            changes |= {"work_capacity": None} if word == "capacity" else WITHOUT[word]
-    return replace(one, **changes)
+            changes |= WITHOUT.get(word, {})
+    free = replace(one, **changes)
+    return with_last_end(free, None) if "shift" in own and "shift" in without and one.id in names else free
 
 
 def _not_before(said, times):
@@ -124,7 +130,8 @@ def _arrival(meaning, i, j, routes, ends):
     route = routes[i]
     at = route.index(j)
     leaves = ends[route[at - 1]] if at else meaning.robots[i].available_from_s
-    return leaves + meaning._travel.seconds(i, meaning.tasks[route[at - 1]] if at else None, meaning.tasks[j])
+    way = meaning._travel.seconds(i, meaning.tasks[route[at - 1]] if at else None, meaning.tasks[j])
+    return meaning.moved(i, leaves, way)
 
 
 def _begins(possible, robot, name, lost, _, time, close):
@@ -139,8 +146,15 @@ def _ends(possible, robot, name, lost, time, deadline):
 
 def _route_ends(possible, robot, name, lost, time, until):
     meaning, i, _, plans = possible.by(robot, name, robots=[robot], without=["shift"])
-    times = [ends[routes[i][-1]] + meaning.way_home(i, routes[i], "seconds") for routes, _, ends in plans]
+    times = [meaning.back(i, routes[i], ends) for routes, _, ends in plans]
     return _not_before(time, times) and near(until, possible.mission.robots[i].available_until_s)
+
+
+def _under_way(possible, robot, name, lost, time, longest):
+    """No plan has the robot under way for less than is said, if its duty had no limit."""
+    meaning, i, _, plans = possible.by(robot, name, robots=[robot], without=["duty"])
+    times = [meaning.back(i, routes[i], ends) - meaning.robots[i].available_from_s for routes, _, ends in plans]
+    return _not_before(time, times) and near(longest, possible.mission.robots[i].longest_duty_s)
 
 
 def _waits_too_long(possible, robot, name, lost, until):
@@ -249,6 +263,7 @@ ALONE = (
     (rf"(begins after \S+,|begins together with .+,|its team is there|begins) {_TIME}{_WINDOW}", _begins),
     (rf"ends {_TIME}{_DEADLINE}", _ends),
     (rf"its route would end {_TIME}shift ends at {SECONDS}", _route_ends),
+    (rf"takes at least {SECONDS} from its start to the end of its route, its longest duty is {SECONDS}", _under_way),
     (rf"what it waits for is too late for its shift, which ends at {SECONDS}", _waits_too_long),
     (rf"what it waits for is too late for its deadline, which is {SECONDS}", _waits_too_long_for("deadline")),
     (
@@ -316,7 +331,8 @@ def _too_late_in(possible, robot, part):
     first, then, time, until = over.groups()
     meaning, i = possible.every.meaning, possible.robot[robot]
     routes = _in_order(possible, robot, first, then, robots=[robot], without=["shift"])
-    ends = [ends[one[i][-1]] + meaning.way_home(i, one[i], "seconds") for one, _, ends in routes]
+    free, _ = possible._plans(robots=[robot], without=["shift"])
+    ends = [free.back(i, one[i], ends) for one, _, ends in routes]
     return _not_before(time, ends) and near(until, possible.mission.robots[i].available_until_s)
 
 

@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 from tests.timed_missions.every_plan import EveryPlan
-from tests.timed_missions.meaning import Meaning
+from tests.timed_missions.meaning import Meaning, with_last_end
 
 LESS = 1e-6  # relative: by how much less than what is said to be needed is tried
 LIMITS = {"window": "window", "deadline": "deadline_s", "shift": "available_until_s"}
-UNPROVEN = (*LIMITS, "relation", "min-tasks")  # changes with which a plan was found: without them there may be another
+UNPROVEN = (*LIMITS, "duty", "relation", "min-tasks")  # changes with which a plan was found: without them there may be another
 
 
 def changed(mission, i, j, remedy, **until):
@@ -25,10 +25,10 @@ def changed(mission, i, j, remedy, **until):
 def _robot(robot, said, ends):
     capacity, enough = robot.work_capacity, said["capacity"]["enough"]
     return replace(
-        robot,
+        robot if ends["shift"] is None else with_last_end(robot, ends["shift"]),
         skills=(*robot.skills, *said["skills"]),
         min_tasks=said["min_tasks"]["enough"] if said["min_tasks"] else robot.min_tasks,
-        available_until_s=robot.available_until_s if ends["shift"] is None else ends["shift"],
+        longest_duty_s=None if said["duty"] else robot.longest_duty_s,
         work_capacity=capacity if capacity is None or enough is None else max(capacity, enough),
     )
 

@@ -28,11 +28,11 @@ from muster.model.rules.times import spans
 
 @dataclass(frozen=True)
 class LongerDuty(Change):
-    """A duty without an end."""
+    """A duty of any length."""
 
     @property
-    def plain(self) -> None:
-        return None
+    def plain(self) -> dict[str, None]:
+        return {"longest_duty_s": None}
 
     @property
     def short(self) -> str:
@@ -48,6 +48,7 @@ class Duty(Rule):
     word: ClassVar[str] = "duty"
     asked = ("duty",)
     lifted_late = True
+    key = "duty"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         longest = problem.model.lasts_most
