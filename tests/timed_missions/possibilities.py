@@ -329,7 +329,7 @@ def _too_late_in(possible, robot, part):
         return _not_before(time, times) and near(close or deadline, task.window_s[-1][1] if close else task.deadline_s)
     over = re.fullmatch(rf"with (\S+) first and then (\S+), its route would end {_TIME}shift ends at {SECONDS}", part)
     first, then, time, until = over.groups()
-    meaning, i = possible.every.meaning, possible.robot[robot]
+    i = possible.robot[robot]
     routes = _in_order(possible, robot, first, then, robots=[robot], without=["shift"])
     free, _ = possible._plans(robots=[robot], without=["shift"])
     ends = [free.back(i, one[i], ends) for one, _, ends in routes]

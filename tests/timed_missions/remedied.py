@@ -7,7 +7,8 @@ from tests.timed_missions.meaning import Meaning, with_last_end
 
 LESS = 1e-6  # relative: by how much less than what is said to be needed is tried
 LIMITS = {"window": "window", "deadline": "deadline_s", "shift": "available_until_s"}
-UNPROVEN = (*LIMITS, "duty", "relation", "min-tasks")  # changes with which a plan was found: without them there may be another
+UNPROVEN = (*LIMITS, "duty", "relation", "min-tasks")
+"""Changes with which a plan was found: without them there may be another."""
 
 
 def changed(mission, i, j, remedy, **until):

@@ -102,9 +102,7 @@ def _within_shifts(problem: Problem) -> Problem:
     if end_s is None:
         return problem
     longer = tuple(
-        robot
-        if robot.available_until_s is None
-        else with_end(robot, max(robot.available_until_s, end_s))
+        robot if robot.available_until_s is None else with_end(robot, max(robot.available_until_s, end_s))
         for robot in problem.robots
     )
     return replace(problem, robots=longer)

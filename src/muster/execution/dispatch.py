@@ -13,12 +13,13 @@ from muster.execution.record import Tell
 from muster.execution.robots.monitor import exceeds
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.station_calls import Call, as_one, next_call
-from muster.execution.robots.task_motion import MotionPlanner, Way, Work, along, work_of
+from muster.execution.robots.task_motion import MotionPlanner, Way, Work, along, travel_s, work_of
 from muster.execution.robots.work_orders import delayed, least_s, least_usage, stop_work, usage_home, work_for
 from muster.execution.stations.energy_watch import EnergyWatch
 from muster.execution.stations.slots import AT_STATION
 from muster.execution.stations.station_service import StationService
 from muster.execution.timing.beginning import Beginning, next_begin
+from muster.execution.timing.duty import back_s, over_by_s
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 from muster.state import MissionState
@@ -70,6 +71,7 @@ class Dispatch:
         self._way = way
         self._emit, self._ask = emit, ask
         self._peers = peers
+        self.leaves_s: Callable[[RobotState, float], float] = lambda state, now: now  # of whose duty is limited
         self.ahead: Mapping[str, Mapping[str, float]] = {}  # by the plan in force: see `Revision`
 
     def advance(self, state: RobotState, now: float) -> None:
@@ -89,14 +91,15 @@ class Dispatch:
 
     def send_on(self, state: RobotState, now: float) -> None:
         """Send a robot on that is available, or may begin; ask for a new plan if it cannot."""
-        if now < state.aside_until_s:
+        if now < max(state.aside_until_s, state.rests_until_s - TIME_ROUNDING_S):
             return
         if state.activity is Activity.WAITING:
             self._begin_or_wait(state, state.route[0], now)
         elif state.activity is Activity.QUEUEING and self.service is not None:
             self.service.serve_or_wait(state, now)
         elif (call := self._call_to_make(state, now)) is not None and self.service is not None:
-            self.service.set_out(state, call, now)
+            if not self._leaves_later(state, now):
+                self.service.set_out(state, call, now)
         elif state.available and state.route and now >= state.robot.available_from_s:
             self._to_task(state, state.route[0], now)
         elif self.goes_home(state) and state.home is not None:
@@ -115,9 +118,17 @@ class Dispatch:
         way = self.way(state, home)
         if way is None or (self.energy is not None and not self.energy.gets_home(state)):
             self.end_here(state, now)
-        else:
+        elif not self._rests(state, travel_s(state.times, state.position, along(way)), now):
             state.send(now, Activity.RETURNING, along(way))
             self._emit(Returns(robot=state.robot.id))
+
+    def _rests(self, state: RobotState, way_s: float, now: float) -> bool:
+        """Whether a robot does not set out yet on a way of so many seconds, as no shift lasts until its end."""
+        begins = state.robot.set_out(now, way_s)
+        if begins == math.inf or begins <= now + TIME_ROUNDING_S:  # what no shift is left for was too late before
+            return False
+        state.rests_until_s = begins
+        return True
 
     def goes_home(self, state: RobotState) -> bool:
         """Whether a robot without tasks has yet to go where its route ends."""
@@ -154,6 +165,7 @@ class Dispatch:
 
         An order that holds work is none for a task that has meanwhile got more to wait for, such as one to begin with.
         """
+        state.rests_until_s = -math.inf
         if state.activity is Activity.WORKING:
             state.route, state.calls = [state.route[0], *tasks], list(calls)
             return
@@ -186,7 +198,9 @@ class Dispatch:
 
     def _begins_unasked(self, state: RobotState) -> bool:
         """Whether a robot on the way would begin its task at once, and the task must wait for more than it did."""
-        return state.activity is Activity.DRIVING and state.works and self._beginning.must_ask(state.route[0])
+        return (
+            state.activity is Activity.DRIVING and state.works and self._beginning.must_ask(state.route[0], state.robot)
+        )
 
     def refuse(self, state: RobotState, task: str, reason: str, now: float) -> None:
         """A robot cannot do a task of its route."""
@@ -271,18 +285,33 @@ class Dispatch:
             return
         state.work, state.work_s, state.delay_s = work, lasts, delay
         state.home_usage, state.home_s = home_usage, home_s
-        late = self._too_late(state, task, now + least_s(state, state.position, there))
+        way_s = travel_s(state.times, state.position, there)
+        leaves = state.robot.set_out(now, way_s)
+        late = self._too_late(state, task, leaves + least_s(state, state.position, there))
         if late:
             state.work = None
             self.refuse(state, task, late, now)
             return
-        may_begin = self._ledger.may_begin(task) and not self._beginning.must_ask(task)
+        if self._rests(state, way_s, now) or self._leaves_later(state, now):
+            state.work = None
+            return
+        may_begin = self._ledger.may_begin(task) and not self._beginning.must_ask(task, state.robot)
         state.charged_idle = False
         state.to_task, state.works = len(there), self._peers is None and may_begin
         state.at_home = False
         state.usage_to_task = state.used - state.used_before + self._planned_usage(state, task)
         state.send(now, Activity.DRIVING, [*there, *(delayed(work, delay) if state.works else ())])
         self._emit(SetsOut(robot=state.robot.id, task=task, used=state.used))
+
+    def _leaves_later(self, state: RobotState, now: float) -> bool:
+        """Whether a robot does not leave its start yet, as its duty would last too long."""
+        if state.robot.longest_duty_s is None or state.known.left_s is not None:
+            return False
+        leaves = self.leaves_s(state, now)
+        if leaves <= now + TIME_ROUNDING_S:
+            return False
+        state.rests_until_s = leaves
+        return True
 
     def _arrive(self, state: RobotState, now: float) -> None:
         task = state.route[0]
@@ -341,17 +370,24 @@ class Dispatch:
             self._emit(Waits(robot=state.robot.id, task=task, cause=cause, words=words))
 
     def _too_late(self, state: RobotState, task: str, begin_s: float) -> str:
-        """Why a robot that is at a task at a time cannot do it, by window, deadline or shift; else empty."""
+        """Why a robot that is at a task at a time cannot do it, by window, deadline, shift or duty; else empty."""
         what = self._ledger.tasks[task]
+        if begin_s == math.inf:
+            return "shift: no shift left lasts as long as the way there"
         begin_s, arrive_s = next_begin([what], begin_s), begin_s
         if begin_s == math.inf:
             return f"window: would arrive at {arrive_s:,.1f} s, after it has closed"
+        begin_s = state.robot.set_out(begin_s, state.work_s)
+        if begin_s == math.inf:
+            return "shift: no shift left lasts as long as the work"
         ends_s, deadline = begin_s + state.work_s, what.deadline_s
         if deadline is not None and ends_s > deadline + TIME_ROUNDING_S:
             return f"deadline: would end at {ends_s:,.1f} s, after {deadline:,g} s"
-        until, back_s = state.robot.available_until_s, ends_s + state.home_s
-        if until is not None and back_s > until + TIME_ROUNDING_S:
-            return f"shift: would be back at {back_s:,.1f} s, after {until:,g} s"
+        until, back = state.robot.available_until_s, back_s(state, ends_s, state.home_s)
+        if until is not None and back > until + TIME_ROUNDING_S:
+            return f"shift: would be back at {back:,.1f} s, after {until:,g} s"
+        if back > over_by_s(state) + TIME_ROUNDING_S:
+            return f"duty: would be back at {back:,.1f} s, after {over_by_s(state):,g} s"
         return ""
 
     def _work(self, task: str, team: Sequence[RobotState], now: float) -> None:

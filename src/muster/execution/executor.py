@@ -156,6 +156,7 @@ class Executor:
             self._ask,
             peers,
         )
+        self._dispatch.leaves_s = self._forecast.leaves_s
         self._dispatch.service = StationService(
             self.stations, self.ledger, self.goods, self._dispatch.way, self.emit, self._ask
         )
@@ -229,7 +230,8 @@ class Executor:
         """When the clock alone brings something next: an event of the mission, a robot available; inf if nothing."""
         available = [state.robot.available_from_s for state in self._present if state.route]
         standing = (self._script.next_s, self._improvement_due_s, self._standing.stays_until_s)
-        times = [*standing, *available, *self._punctuality.times(self.now_s)]
+        resting = [state.rests_until_s for state in self._present]
+        times = [*standing, *available, *resting, *self._punctuality.times(self.now_s)]
         return min((time for time in times if time > self.now_s), default=math.inf)
 
     def report(self, event: Event, reason: str = "", came_s: float | None = None) -> None:

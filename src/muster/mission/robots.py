@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from muster.mission.goods import Amount, Amounts, by_commodity
@@ -32,6 +34,9 @@ class Camera(Checked):
     height_px: int = spec(Whole(minimum=1, maximum=MOST_PIXELS[1]), "height of its picture", default=480)
     rate_hz: float = spec(Number(above=0, maximum=100), "pictures a second", default=2.0)
 
+
+_ROUNDING_S = 1e-6
+"""By how much what a robot does may last beyond its shift."""
 
 _AVAILABLE: Mapping[str, float | None] = {"available_from_s": 0.0, "available_until_s": None}
 """What a file that does not say when a robot is available means."""
@@ -135,6 +140,34 @@ class Robot(Checked):
         if any(values.get(name, _AVAILABLE[name]) not in (_AVAILABLE[name], bound) for name, bound in bounds.items()):
             return {}  # a fault
         return {"shifts_s": shifts if len(shifts) > 1 else (), **bounds}
+
+    def from_time(self, now_s: float) -> Robot:
+        """Return the robot available no sooner than at a time, with what is left of its shifts then."""
+        if not self.shifts_s:
+            return replace(self, available_from_s=max(self.available_from_s, now_s))
+        return self.with_shifts(
+            [(max(begins, now_s), ends) for begins, ends in self.shifts_s if ends is None or ends > now_s]
+            or [(now_s, now_s)]
+        )
+
+    def until_time(self, end_s: float) -> Robot:
+        """Return the robot available no longer than until a time."""
+        shifts = self.shifts_s or ((self.available_from_s, self.available_until_s),)
+        kept = [(begins, end_s if ends is None else min(ends, end_s)) for begins, ends in shifts if begins < end_s]
+        return self.with_shifts(kept or [(self.available_from_s, self.available_from_s)])
+
+    def with_shifts(self, shifts: Sequence[Window]) -> Robot:
+        """Return the robot with other shifts: at least one, in order."""
+        (begins, _), (_, ends) = shifts[0], shifts[-1]
+        return replace(self, shifts_s=tuple(shifts), available_from_s=begins, available_until_s=ends)
+
+    def set_out(self, now_s: float, seconds: float) -> float:
+        """Return from when on, not before now, a shift lasts so long; inf: none does."""
+        if not self.shifts_s:
+            return now_s
+        tried = ((max(now_s, begins), ends) for begins, ends in self.shifts_s)
+        lasts = (begin for begin, ends in tried if ends is None or begin + seconds <= ends + _ROUNDING_S)
+        return next(lasts, math.inf)
 
     def file_values(self) -> Mapping[str, Any]:
         return _AVAILABLE if self.shifts_s else {}

@@ -87,7 +87,8 @@ class PlanModel:
             ends = open_yet & (start + left <= last)
             until = np.where(ends, start + left, until)
             open_yet &= ~ends
-            left = np.where(open_yet, left - np.maximum(0.0, last - start), left)
+            room = np.maximum(0.0, last - np.where(open_yet, start, 0.0))
+            left = np.where(open_yet, left - np.where(open_yet, room, 0.0), left)
         return np.where(open_yet, math.inf, until) if self.spans(i) else until
 
     @cached_property

@@ -107,6 +107,8 @@ def planned_from(mission: Mission, now_s: float) -> Mission:
 
 def _available_from(robot: Robot, now_s: float) -> Robot:
     until_s = robot.available_until_s
+    if robot.shifts_s:
+        return robot.from_time(now_s if until_s is None else min(now_s, until_s))
     begins_s = max(robot.available_from_s, now_s)
     return replace(robot, available_from_s=begins_s if until_s is None else min(begins_s, until_s))
 

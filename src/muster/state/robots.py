@@ -25,6 +25,8 @@ class KnownRobot:
         the tasks that it did; and the same with the stations between them.
     planned
         the usage of these tasks as planned, in the mission's unit.
+    left_s
+        when it left its start; None: it has not.
     used
         its usage when it last told of that; None: it has not.
     charge
@@ -39,6 +41,7 @@ class KnownRobot:
     done: list[str] = field(default_factory=list)
     stops: list[str] = field(default_factory=list)
     planned: float = 0.0
+    left_s: float | None = None
     used: float | None = None
     charge: tuple[float, float] | None = None
     came_to: dict[str, tuple[float, float]] = field(default_factory=dict)
@@ -47,6 +50,11 @@ class KnownRobot:
     def begin_at(self, position: tuple[float, ...], heading_deg: float) -> None:
         """It begins elsewhere than the mission says: metres in the map frame, degrees."""
         self.robot = replace(self.robot, position=position, heading_deg=heading_deg)
+
+    def leave(self, now_s: float) -> None:
+        """It sets out, for the first time or again."""
+        if self.left_s is None:
+            self.left_s = now_s
 
     def note_used(self, used: float | None, charge: float | None = None) -> None:
         """Note its usage, and the share that its battery holds, where they are told."""

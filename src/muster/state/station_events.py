@@ -31,6 +31,11 @@ class AtStation(ExecutionEvent):
 class GoesToStation(AtStation):
     """A robot sets out for a station."""
 
+    def change(self, state: MissionState) -> None:
+        super().change(state)
+        if (robot := state.robots.get(self.robot)) is not None:
+            robot.leave(self.time_s)
+
 
 @happens("arrives_at_station", words.arrives_at_station)
 class ArrivesAtStation(AtStation):

@@ -26,6 +26,8 @@ class SetsOut(ExecutionEvent):
 
     def change(self, state: MissionState) -> None:
         state.note_used(self.robot, self.used)
+        if (robot := state.robots.get(self.robot)) is not None:
+            robot.leave(self.time_s)
 
 
 @happens("arrives", "{robot} is at task {task}")

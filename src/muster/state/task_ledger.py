@@ -435,10 +435,12 @@ def task_as_it_holds(task: Task, ignored: Collection[str]) -> Task:
 
 
 def robot_as_it_holds(robot: Robot, ignored: Collection[str]) -> Robot:
-    """A robot without what does not hold: its shift, its battery, what it carries."""
+    """A robot without what does not hold: its shifts, its longest duty, its battery, what it carries."""
     without: dict[str, Any] = {}
     if "shift" in ignored:
-        without |= {"available_until_s": None}
+        without |= {"available_until_s": None, "shifts_s": ()}
+    if "duty" in ignored:
+        without |= {"longest_duty_s": None}
     if "battery" in ignored:
         without |= {"battery": None}
     if "load" in ignored:

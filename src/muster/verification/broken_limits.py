@@ -48,7 +48,8 @@ def _outside_shifts(graph: Graph, route: MeasuredRoute) -> Iterator[Violation]:
         if math.isinf(shifts.begin(free, stop.leg.seconds)):
             yield _shift_violation(robot, None, f"the way to {place}", free, stop.leg.seconds)
         begin = graph.begin[graph.node_of[name]]
-        if isinstance(stop, Step) and math.isinf(shifts.begin(begin, stop.seconds)):
+        # In a later shift the windows of the task may be closed.
+        if isinstance(stop, Step) and is_after(shifts.begin(begin, stop.seconds), begin):
             yield _shift_violation(robot, place, f"the work on {place}", begin, stop.seconds)
         before = name
     if route.last_leg is not None:

@@ -10,8 +10,11 @@ from muster.mission.model import Mission, Task
 from muster.model.problem import Problem
 from muster_team.knowledge.epoch_base import joint_among
 
-AGREED = FOR_GOOD - {"load", "battery"}
-"""What the auction agrees on: without a centre nobody shares out the slots of stations, or knows what lies where."""
+AGREED = FOR_GOOD - {"load", "battery", "rests", "duty"}
+"""What the auction agrees on: without a centre nobody shares out the slots of stations, or knows what lies where.
+
+Nor do robots agree on a begin that their rests allow, or leave late for each other.
+"""
 
 
 def refuse_what_is_not_agreed(problem: Problem, can: frozenset[str]) -> None:

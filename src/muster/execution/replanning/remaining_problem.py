@@ -55,6 +55,8 @@ class RobotSnapshot:
         how fast that drains, times the usage.
     load
         what it has on board then, by commodity.
+    over_by_s
+        when its route must be over as its longest duty is then; None: it has none, or has not left its start.
     """
 
     robot: Robot
@@ -67,6 +69,7 @@ class RobotSnapshot:
     level: float | None = None
     drain: float = 1.0
     load: Mapping[str, float] = field(default_factory=dict)
+    over_by_s: float | None = None
 
     @property
     def has_past(self) -> bool:
@@ -403,7 +406,7 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
     if not snapshot.has_past:
         leaves = snapshot.free_s
     available_from_s = max(0.0, leaves if snapshot.has_past else max(leaves, robot.available_from_s))
-    until = robot.available_until_s
+    robot = _over_in_time(robot, snapshot, available_from_s)
     return replace(
         robot,
         position=snapshot.spot.point[: mission.dimensions],
@@ -412,9 +415,22 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
         min_tasks=0,  # what was planned kept it; what happens since may not leave so many
         work_capacity=capacity,
         load_at_start=_load_of(snapshot, rest),
-        available_from_s=available_from_s,
-        available_until_s=None if until is None else max(until, available_from_s),
     )
+
+
+def _over_in_time(robot: Robot, snapshot: RobotSnapshot, from_s: float) -> Robot:
+    """The robot from a time on, with what is left of its shifts and its duty. What it did and does stands in none."""
+    if snapshot.over_by_s is not None:
+        robot = replace(robot.until_time(snapshot.over_by_s), longest_duty_s=None)
+    if not robot.shifts_s:
+        until = robot.available_until_s
+        until = None if until is None else max(until, from_s)
+        return replace(robot, available_from_s=from_s, available_until_s=until)
+    rest = robot.from_time(snapshot.free_s)
+    if from_s >= snapshot.free_s:
+        return rest
+    left = rest.shifts_s or ((rest.available_from_s, rest.available_until_s),)
+    return rest.with_shifts(((from_s, snapshot.free_s), *left))
 
 
 def _load_of(snapshot: RobotSnapshot, rest: RemainingMission) -> Amount | None:

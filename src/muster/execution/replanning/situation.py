@@ -14,6 +14,7 @@ from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.station_calls import with_calls
 from muster.execution.stations.slots import AT_STATION, Stations
 from muster.execution.stations.station_service import level_after_service
+from muster.execution.timing.duty import over_by_s
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.plan import Plan, Reason, Route, RouteStop, Unassigned
@@ -118,6 +119,7 @@ def _snapshot(state: RobotState, now: float, stations: Stations, load: Mapping[s
         level=_level(state, now, stations),
         drain=1.0 if state.energy is None else state.energy.drain,
         load=load,
+        over_by_s=None if math.isinf(over_by_s(state)) else over_by_s(state),
     )
 
 

@@ -78,6 +78,7 @@ class RobotState:
     charged_idle: bool = False  # whether it has gone to charge of itself, and has done no task since
     out_at: Place | None = None  # where it was when it was out
     aside_until_s: float = -math.inf  # until when it stands aside for others in a jam
+    rests_until_s: float = -math.inf  # until when it does not set out: its shift ends too soon, or its duty would
     activity: Activity = Activity.IDLE
     telemetry: Telemetry | None = None
     work: Work | None = None  # at state

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.timing.teams import lacking
-from muster.mission.model import Task
+from muster.mission.model import Robot, Task
 from muster.state.task_ledger import TIME_ROUNDING_S, Ledger
 
 
@@ -22,8 +22,8 @@ class Wait:
     Parameters
     ----------
     cause
-        `prerequisite`, `window`, `lag`, `team`, `start` (tasks that begin with it) or `dependant` (one that must begin
-        soon after it).
+        `prerequisite`, `window`, `lag`, `team`, `start` (tasks that begin with it), `dependant` (one that must begin
+        soon after it) or `shift` (a robot rests before the work would be done).
     words
         the same for a person: `waits for team: r_2`.
     until_s
@@ -73,11 +73,11 @@ class Beginning:
     hold_until_s: Callable[[str, float], float]
     alone: bool = True
 
-    def must_ask(self, task: str) -> bool:
+    def must_ask(self, task: str, robot: Robot) -> bool:
         """Whether a robot stops at a task before it begins: whether it may is not known when it sets out."""
-        return any(_is_bound(self.ledger.tasks[name]) for name in self.ledger.unit(task)) or self.ledger.has_within(
-            task
-        )
+        if robot.shifts_s or self.ledger.has_within(task):
+            return True
+        return any(_is_bound(self.ledger.tasks[name]) for name in self.ledger.unit(task))
 
     def wait(self, task: str, now: float) -> Wait | None:
         """Why robots must wait at a task now; None: work may begin."""
@@ -115,6 +115,7 @@ class Beginning:
         yield from self._lag(unit, now)
         if self.alone:
             yield from self._absent(task, unit)
+        yield from self._rests(unit, now if math.isinf(opens) else opens)
         hold = self.hold_until_s(task, now)
         if hold > now + TIME_ROUNDING_S:
             after = ", ".join(self.ledger.within_dependants(unit))
@@ -125,6 +126,17 @@ class Beginning:
             for before, (earliest, _) in self.ledger.lag_limits(name).items():
                 if earliest > now + TIME_ROUNDING_S:
                     yield Wait("lag", f"waits for lag: {_seconds(earliest)}, after {before}", earliest)
+
+    def _rests(self, unit: Sequence[str], now: float) -> Iterator[Wait]:
+        """A robot would have to rest before the work is done: all begin when each of them works through."""
+        for name in unit:
+            here = self.present(name)
+            lasts_s = max((state.work_s for state in here), default=0.0)
+            for state in here:
+                begins = state.robot.set_out(now, lasts_s)
+                if begins > now + TIME_ROUNDING_S:
+                    words = f"waits for shift: {state.robot.id} works from {_seconds(begins)} on"
+                    yield Wait("shift", words, begins)
 
     def _absent(self, task: str, unit: Sequence[str]) -> Iterator[Wait]:
         for name in sorted(unit, key=lambda other: other != task):

@@ -13,11 +13,12 @@ from dataclasses import dataclass, field
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.task_motion import MotionPlanner, Way, Work, travel_s, work_of
 from muster.execution.timing.beginning import next_begin
+from muster.execution.timing.duty import back_s
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 from muster.state.task_ledger import Ledger
 
-_MARGIN = 0.1  # share of the time until a dependant's robot arrives, by which that may be late
+_MARGIN = 0.1  # share of the time until a dependant's robot arrives, by which that may be late; and of a longest duty
 _SETTLED_S = 1e-6
 
 
@@ -57,6 +58,16 @@ class Forecast:
         found = (self.begins(now, margin) for margin in (_MARGIN, 0.0))
         return next((begins[task] for begins in found if begins is not None and task in begins), now)
 
+    def leaves_s(self, state: RobotState, now: float) -> float:
+        """When a robot leaves its start for a duty that is short enough; by a margin, if nothing is later so."""
+        found = [_Times(self, now, margin) for margin in (0.0, _MARGIN)]
+        just, early = (times if times.settle() else None for times in found)
+        if just is None:
+            return now
+        name = state.robot.id
+        no_later = early is not None and early.over[name] <= just.over[name] + _SETTLED_S
+        return (early if early is not None and no_later else just).leaves[name]
+
     def work(self, state: RobotState, task: str) -> Work | None:
         """How a robot does a task; None if it cannot."""
         what = self.ledger.tasks[task]
@@ -81,6 +92,13 @@ class Forecast:
             self._legs_s[key] = travel_s(state.times, start, [Waypoint(point) for point in points])
         return self._legs_s[key]
 
+    def home_s(self, state: RobotState, start: Place) -> float:
+        """Seconds from a place to where the robot's route ends."""
+        if state.home is None:
+            return 0.0
+        points = self.way(state.robot, start, state.home) or ()
+        return travel_s(state.times, start, [Waypoint(point) for point in points])
+
 
 @dataclass
 class _Times:
@@ -90,6 +108,8 @@ class _Times:
     now: float
     margin: float
     begins: dict[str, float] = field(default_factory=dict)
+    leaves: dict[str, float] = field(default_factory=dict)  # by robot that has yet to leave, and whose duty is limited
+    over: dict[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._ledger = self.of.ledger
@@ -107,12 +127,17 @@ class _Times:
             name: max(self.of.lasts_s(state, name) for state in present if name in self._ahead[state.robot.id])
             for name in names
         }
+        self._last: dict[str, Place] = {}  # by robot where its last task ends
         self._legs = {state.robot.id: list(self._legs_of(state)) for state in present}
+        waiting = [s for s in present if s.robot.longest_duty_s is not None and s.known.left_s is None]
+        self.leaves = {state.robot.id: self._free_s(state) for state in waiting}
+        self._homes = {s.robot.id: self.of.home_s(s, self._last[s.robot.id]) for s in waiting}
+        self.over = dict(self.leaves)
         self._raised = False
 
     def settle(self) -> bool:
         """Raise bounds until none changes; False if they never fit together."""
-        for _ in range(2 * len(self.begins) + 4):
+        for _ in range(2 * len(self.begins) + 2 * len(self.leaves) + 4):
             self._raised = False
             for state in self._present:
                 self._follow(state)
@@ -131,12 +156,22 @@ class _Times:
 
     def _follow(self, state: RobotState) -> None:
         """The robot arrives at one task after the other."""
-        leaves = self._free_s(state)
-        for name, leg in zip(self._ahead[state.robot.id], self._legs[state.robot.id], strict=True):
-            arrives = leaves + leg
+        robot = state.robot
+        leaves = self.leaves.get(robot.id, self._free_s(state))
+        under_way = state.activity in (Activity.DRIVING, Activity.WAITING)
+        for k, (name, leg) in enumerate(zip(self._ahead[robot.id], self._legs[robot.id], strict=True)):
+            arrives = leaves + leg if k == 0 and under_way else robot.set_out(leaves, leg) + leg
             self._arrives[name] = max(self._arrives[name], arrives)
             self._raise(name, arrives)
             leaves = self.begins[name] + self._lasts[name]
+        if robot.longest_duty_s is not None and robot.id in self.leaves:
+            self.over[robot.id] = back_s(state, leaves, self._homes[robot.id])
+            self._leave(robot.id, self.over[robot.id] - (1 - self.margin) * robot.longest_duty_s)
+
+    def _leave(self, robot: str, at: float) -> None:
+        if self.leaves[robot] + _SETTLED_S < at < math.inf:
+            self.leaves[robot] = at
+            self._raised = True
 
     def _wait(self, name: str) -> None:
         """Prerequisites have ended, windows are open, and tasks that begin with it begin too."""
@@ -145,7 +180,11 @@ class _Times:
                 self._raise(name, self._end(before) + self._ledger.tasks[name].lag(before).after_s)
         unit = self._ledger.unit(name)
         together = max(self.begins.get(other, self.now) for other in unit)
-        self._raise(name, next_begin([self._ledger.tasks[other] for other in unit], together))
+        begin = next_begin([self._ledger.tasks[other] for other in unit], together)
+        for state in self._present:
+            if state.robot.shifts_s and name in self._ahead[state.robot.id]:
+                begin = state.robot.set_out(begin, self._lasts[name])
+        self._raise(name, begin)
 
     def _hold_prerequisites(self, name: str) -> None:
         """Prerequisites begin so late that this task can begin in time after them."""
@@ -175,6 +214,7 @@ class _Times:
                 legs.append(self.of.leg_s(state, place, name))
             work = self.of.work(state, name)
             place = place if work is None else work.exit
+        self._last[state.robot.id] = place
         return legs
 
 

@@ -38,12 +38,14 @@ class Outlooks:
             return Outlook(stays=True)
         if state.activity is Activity.IDLE or not state.route:
             return Outlook()
-        if state.activity is not Activity.WORKING and self._must_wait(state.route[0], state.done):
+        if state.robot.shifts_s:
+            return Outlook()  # it may rest before each leg and work
+        if state.activity is not Activity.WORKING and self._must_wait(state, state.route[0], state.done):
             return Outlook()
         visits, done = list[Visit](), [*state.done, state.route[0]]
         for task in state.route[1:]:
             work = self.forecast.work(state, task)
-            if work is None or self._must_wait(task, done) or any(call.before == task for call in state.calls):
+            if work is None or self._must_wait(state, task, done) or any(call.before == task for call in state.calls):
                 return Outlook(tuple(visits))
             visits += _visits(work, self.ledger.delays_s.get(task, 0.0))
             done.append(task)
@@ -51,8 +53,8 @@ class Outlooks:
             return Outlook(tuple(visits))
         return Outlook((*visits, Visit(state.home, 0.0)), stays=True)
 
-    def _must_wait(self, task: str, done: list[str]) -> bool:
-        return self.beginning.must_ask(task) or any(name not in done for name in self.ledger.missing(task))
+    def _must_wait(self, state: RobotState, task: str, done: list[str]) -> bool:
+        return self.beginning.must_ask(task, state.robot) or any(name not in done for name in self.ledger.missing(task))
 
 
 def _visits(work: Work, delay_s: float) -> Iterator[Visit]:

@@ -83,4 +83,3 @@ class Duty(Rule):
 
     def lifted(self, problem: Question, i: int) -> Change | None:
         return LongerDuty() if math.isfinite(problem.model.lasts_most[i]) else None
-

@@ -60,13 +60,16 @@ class Shift(Rule):
     """The end of the route is at most `available_until_s`; legs and work are each within one of `shifts_s`, if any."""
 
     word: ClassVar[str] = "shift"
-    asked = ("shift",)
+    asked = ("shift", "rests")
     lifted_late = True
     key = "shift"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        until = problem.model.over_by
-        return {"shift": first_robot(problem, "available_until_s", lambda i: np.isfinite(until[i]))}
+        until, spans = problem.model.over_by, problem.model.spans
+        return {
+            "shift": first_robot(problem, "available_until_s", lambda i: np.isfinite(until[i])),
+            "rests": first_robot(problem, "shifts_s", spans),
+        }
 
     def compile(self, problem: Question, parts: Parts) -> None:
         for i, robot in enumerate(problem.robots):
