@@ -4,16 +4,39 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from muster.mission.tasks import Task
 from muster.verification.measure import MeasuredRoute, Step
+from muster.verification.rules.shift import Shifts
 from muster.verification.schedule_nodes import is_after, names_of, place_name
 from muster.verification.station_queues import Name
 from muster.verification.verdict import Violation
 
-if TYPE_CHECKING:
-    from muster.verification.schedule import Graph
+
+class Graph(Protocol):
+    """The earliest times of routes, and the limits that they are to keep, as `schedule` has them."""
+
+    routes: Sequence[MeasuredRoute]
+    ignored: Sequence[str]
+    task: dict[str, Task]
+    windows: dict[str, list[tuple[float, float]]]
+    shifts: dict[str, Shifts]
+    begin: dict[Name, float]
+    node_of: dict[Name, Name]
+    seconds: dict[Name, float]
+
+    def limit(self, limit: float) -> float:
+        """Return a limit, moved by a margin."""
+        ...
+
+    def free(self, robot: str, before: Name | None) -> float:
+        """Return when a robot may leave its start, or has ended a stop."""
+        ...
+
+    def back(self, route: MeasuredRoute) -> float:
+        """Return when a route that has stops ends."""
+        ...
 
 
 def broken_limits(graph: Graph) -> Iterator[Violation]:
