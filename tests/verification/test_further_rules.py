@@ -76,6 +76,16 @@ def test_work_longer_than_every_shift_is_named():
     assert judged(tasks, "a", robots=robots, ignore="shift").valid
 
 
+def test_work_that_a_window_forbids_in_the_next_shift_is_named():
+    robots = [robot(shifts_s=((0, 10), (20, 40)))]
+    detail = (
+        "the work on a takes 6 s from 5 s at the earliest; that is not within a shift, and in the next one other limits"
+    )
+    verdict = judged([task("a", 5, duration_s=6, window_s=(0, 19))], "a", robots=robots)
+    assert said(verdict) == [("shift", "r", "a", f"{detail} forbid it")]
+    assert judged([task("a", 5, duration_s=6, window_s=(0, 20))], "a", robots=robots).valid
+
+
 def test_the_way_to_the_end_is_in_a_shift_too():
     robots = [robot(shifts_s=((0, 10), (20, 24.5)), return_to_start=True)]
     detail = "the way to its end takes 5 s from 10 s at the earliest; no shift left has room for it"
