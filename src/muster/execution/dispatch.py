@@ -123,9 +123,9 @@ class Dispatch:
             self._emit(Returns(robot=state.robot.id))
 
     def _rests(self, state: RobotState, way_s: float, now: float) -> bool:
-        """Whether a robot does not set out yet on a way of so many seconds, as no shift lasts until its end."""
+        """Whether a robot does not set out yet on a way of so many seconds, as a later shift lasts until its end."""
         begins = state.robot.set_out(now, way_s)
-        if begins == math.inf or begins <= now + TIME_ROUNDING_S:  # what no shift is left for was too late before
+        if begins == math.inf or begins <= now + TIME_ROUNDING_S:
             return False
         state.rests_until_s = begins
         return True
@@ -286,14 +286,15 @@ class Dispatch:
         state.work, state.work_s, state.delay_s = work, lasts, delay
         state.home_usage, state.home_s = home_usage, home_s
         way_s = travel_s(state.times, state.position, there)
-        leaves = state.robot.set_out(now, way_s)
-        late = self._too_late(state, task, leaves + least_s(state, state.position, there))
+        if self._rests(state, way_s, now) or self._leaves_later(state, now):
+            state.work = None
+            return
+        late = self._too_late(state, task, now + least_s(state, state.position, there), leaves_s=now)
+        if state.robot.set_out(now, way_s) == math.inf:
+            late = "shift: no shift left lasts as long as the way there"
         if late:
             state.work = None
             self.refuse(state, task, late, now)
-            return
-        if self._rests(state, way_s, now) or self._leaves_later(state, now):
-            state.work = None
             return
         may_begin = self._ledger.may_begin(task) and not self._beginning.must_ask(task, state.robot)
         state.charged_idle = False
@@ -369,11 +370,9 @@ class Dispatch:
         if cause != "prerequisite" and words != said:
             self._emit(Waits(robot=state.robot.id, task=task, cause=cause, words=words))
 
-    def _too_late(self, state: RobotState, task: str, begin_s: float) -> str:
+    def _too_late(self, state: RobotState, task: str, begin_s: float, leaves_s: float = math.inf) -> str:
         """Why a robot that is at a task at a time cannot do it, by window, deadline, shift or duty; else empty."""
         what = self._ledger.tasks[task]
-        if begin_s == math.inf:
-            return "shift: no shift left lasts as long as the way there"
         begin_s, arrive_s = next_begin([what], begin_s), begin_s
         if begin_s == math.inf:
             return f"window: would arrive at {arrive_s:,.1f} s, after it has closed"
@@ -384,10 +383,12 @@ class Dispatch:
         if deadline is not None and ends_s > deadline + TIME_ROUNDING_S:
             return f"deadline: would end at {ends_s:,.1f} s, after {deadline:,g} s"
         until, back = state.robot.available_until_s, back_s(state, ends_s, state.home_s)
+        if back == math.inf:
+            return "shift: no shift left lasts as long as the way to its end"
         if until is not None and back > until + TIME_ROUNDING_S:
             return f"shift: would be back at {back:,.1f} s, after {until:,g} s"
-        if back > over_by_s(state) + TIME_ROUNDING_S:
-            return f"duty: would be back at {back:,.1f} s, after {over_by_s(state):,g} s"
+        if back > (over_s := over_by_s(state, leaves_s)) + TIME_ROUNDING_S:
+            return f"duty: would be back at {back:,.1f} s, after {over_s:,g} s"
         return ""
 
     def _work(self, task: str, team: Sequence[RobotState], now: float) -> None:

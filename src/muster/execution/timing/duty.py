@@ -7,10 +7,10 @@ import math
 from muster.execution.robots.robot_state import RobotState
 
 
-def over_by_s(state: RobotState) -> float:
-    """When a robot that has left its start has to be at the end of its route, by its longest duty; inf: whenever."""
+def over_by_s(state: RobotState, leaves_s: float = math.inf) -> float:
+    """When a robot has to be at the end of its route, by its longest duty; inf: whenever. It leaves, if it has not."""
     longest, left = state.robot.longest_duty_s, state.known.left_s
-    return math.inf if longest is None or left is None else left + longest
+    return math.inf if longest is None else (leaves_s if left is None else left) + longest
 
 
 def back_s(state: RobotState, free_s: float, home_s: float) -> float:

@@ -41,7 +41,7 @@ class Punctuality:
 
     def expect(self, forecast: Forecast, now: float) -> None:
         """Note when tasks are going to begin by the routes as they are now."""
-        self._timed = self.ledger.is_timed
+        self._timed = self.ledger.is_timed or any(state.robot.shifts_s for state in self.crew.values())
         self._planned_s = (forecast.begins(now) or {}) if self._timed else {}
         self._in_time_until_s = {}
 
@@ -86,7 +86,9 @@ class Punctuality:
                 yield now + state.travel_left_m / state.robot.speed_mps
 
     def waits_for_clock(self, now: float) -> bool:
-        """Whether some robot begins when time goes on, or a task that it waits for is given up then."""
+        """Whether some robot sets out or begins when time goes on, or a task that it waits for is given up then."""
+        if any(state.rests_until_s > now and not state.out for state in self.crew.values()):
+            return True
         if not self._timed:
             return False
         waits = [self.beginning.wait(state.route[0], now) for state in self._waiting]
