@@ -35,6 +35,8 @@ RULES_OF = {
 }
 OF_ROBOTS = {
     "shift": {"available_until_s": 200.0},
+    "rests": {"shifts_s": ((0.0, 9.0), (12.0, None))},
+    "duty": {"longest_duty_s": 60.0},
     "min-tasks": {"min_tasks": 2},
     "battery": {"battery": Battery(capacity=500.0)},
 }

@@ -9,17 +9,21 @@ import pytest
 
 import muster
 from muster import core
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Robot
 from muster.model.problem import Problem
 
 _PLACES = 30.0
 
 
-def random_mission(draw: random.Random, objective: str, folder: Path) -> Mission:
-    """A small mission with every rule of time, team and relation."""
+def random_mission(draw: random.Random, objective: str, folder: Path, *, resting: bool = False) -> Mission:
+    """A small mission with every rule of time, team and relation; `resting`: with breaks and longest duties too."""
     robots = [
         {"id": f"r{i}", "position": _place(draw), "abilities": {"lift": draw.randint(1, 2)}} for i in range(4)
     ] + [{"id": "late", "position": _place(draw), "available_from_s": 20, "available_until_s": 400}]
+    if resting:
+        robots[0] |= {"shifts_s": [[5, 25], [40, 90], [100, None]], "end_position": _place(draw)}
+        robots[1] |= {"longest_duty_s": draw.uniform(40, 120)}
+        robots[2] |= {"shifts_s": [[0, 60], [70, 120], [130, 500]], "longest_duty_s": draw.uniform(60, 150)}
     tasks = [_task(draw, k) for k in range(10)]
     rules = {"objective": objective, "return_to_start": draw.random() < 0.5, "timing": "constant"}
     path = folder / "m.yaml"
@@ -78,8 +82,10 @@ def _raised(
             continue
         at, robot = route.index(j), problem.robots[i]
         place = problem.tasks[route[at - 1]].position if at else robot.position
-        leaves = begin[route[at - 1]] + work[route[at - 1]] if at else robot.available_from_s
-        bound = max(bound, leaves + math.dist(place, task.position) / robot.speed_mps)
+        leaves = begin[route[at - 1]] + work[route[at - 1]] if at else _departure(problem, route, begin, work, i)
+        way = math.dist(place, task.position) / robot.speed_mps
+        bound = max(bound, _free(robot, leaves, way) + way)
+        bound = max(bound, _free(robot, bound, work[j]))
     for k in problem.prerequisites[j]:
         bound = max(bound, begin[k] + work[k] + task.lag(problem.tasks[k].id).after_s)
     for k in problem.dependants[j]:
@@ -90,6 +96,21 @@ def _raised(
         if high is None or bound <= high:
             return max(bound, low)
     return math.inf if task.window_s else bound
+
+
+def _departure(problem: Problem, route: list[int], begin: dict[int, float], work: dict[int, float], i: int) -> float:
+    """When a robot leaves its start, so that it is at its end soon enough after that."""
+    robot, last = problem.robots[i], route[-1]
+    end = robot.place_at_end(problem.mission.rules)
+    way = 0.0 if end is None else math.dist(problem.tasks[last].position, end) / robot.speed_mps
+    back = _free(robot, begin[last] + work[last], way) + way
+    return max(robot.available_from_s, back - (robot.longest_duty_s or math.inf))
+
+
+def _free(robot: Robot, time: float, seconds: float) -> float:
+    """From when on a shift of a robot lasts so long."""
+    begins = (max(time, first) for first, last in robot.shifts_s if max(time, first) + seconds <= (last or math.inf))
+    return next(begins, math.inf) if robot.shifts_s else time
 
 
 def _begins(roster: core.Roster) -> dict[int, float]:
@@ -107,10 +128,13 @@ def _check(problem: Problem, roster: core.Roster) -> None:
 
 @pytest.mark.long(keep=12)
 @pytest.mark.parametrize("objective", ["total", "makespan", "lateness", "total+max"])
+@pytest.mark.parametrize("resting", [False, True])
 @pytest.mark.parametrize("seed", range(12))
-def test_schedule_after_random_changes_is_the_earliest(seed: int, objective: str, tmp_path: Path) -> None:
+def test_schedule_after_random_changes_is_the_earliest(
+    seed: int, resting: bool, objective: str, tmp_path: Path
+) -> None:
     draw = random.Random(seed)
-    problem = Problem.compile(random_mission(draw, objective, tmp_path))
+    problem = Problem.compile(random_mission(draw, objective, tmp_path, resting=resting))
     roster = core.Roster(problem.core)
     assert roster.begin([[] for _ in problem.robots])
     for _ in range(60):
@@ -140,9 +164,10 @@ def _remove(problem: Problem, roster: core.Roster, unit: int) -> bool:
     return all(_remove(problem, roster, k) for k in waiting if k not in roster.absent) and roster.remove(unit)
 
 
+@pytest.mark.parametrize("resting", [False, True])
 @pytest.mark.parametrize("seed", range(8))
-def test_search_finds_admissible_plans(seed: int, tmp_path: Path) -> None:
-    problem = Problem.compile(random_mission(random.Random(seed), "makespan", tmp_path))
+def test_search_finds_admissible_plans(seed: int, resting: bool, tmp_path: Path) -> None:
+    problem = Problem.compile(random_mission(random.Random(seed), "makespan", tmp_path, resting=resting))
     search = core.ScheduleSearch(
         problem.core,
         [[] for _ in problem.robots],
