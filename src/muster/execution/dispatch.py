@@ -118,17 +118,9 @@ class Dispatch:
         way = self.way(state, home)
         if way is None or (self.energy is not None and not self.energy.gets_home(state)):
             self.end_here(state, now)
-        elif not self._rests(state, travel_s(state.times, state.position, along(way)), now):
+        elif not state.rests(travel_s(state.times, state.position, along(way)), now):
             state.send(now, Activity.RETURNING, along(way))
             self._emit(Returns(robot=state.robot.id))
-
-    def _rests(self, state: RobotState, way_s: float, now: float) -> bool:
-        """Whether a robot does not set out yet on a way of so many seconds, as a later shift lasts until its end."""
-        begins = state.robot.set_out(now, way_s)
-        if begins == math.inf or begins <= now + TIME_ROUNDING_S:
-            return False
-        state.rests_until_s = begins
-        return True
 
     def goes_home(self, state: RobotState) -> bool:
         """Whether a robot without tasks has yet to go where its route ends."""
@@ -286,7 +278,7 @@ class Dispatch:
         state.work, state.work_s, state.delay_s = work, lasts, delay
         state.home_usage, state.home_s = home_usage, home_s
         way_s = travel_s(state.times, state.position, there)
-        if self._rests(state, way_s, now) or self._leaves_later(state, now):
+        if state.rests(way_s, now) or self._leaves_later(state, now):
             state.work = None
             return
         late = self._too_late(state, task, now + least_s(state, state.position, there), leaves_s=now)

@@ -49,13 +49,6 @@ def _refuse(mission: Mission, faults: Iterable[Fault]) -> None:
 
 
 def _not_planned(mission: Mission) -> Iterator[Fault]:
-    for path, robot in all_robots(mission):
-        unloads = robot.load_capacity is not None and any(station.unloads for station in mission.stations)
-        if robot.shifts_s and (robot.battery is not None or unloads):
-            beside = "a robot with a battery" if robot.battery is not None else "a robot that unloads at stations"
-            yield Fault(
-                (*path, "shifts_s"), f"of {beside}", "one shift: planning knows no calls at stations between rests"
-            )
     stations = ((("stations", k), station) for k, station in enumerate(mission.stations))
     records: Iterable[tuple[Path, object]] = chain(all_robots(mission), all_work(mission), stations)
     for path, one in records:

@@ -54,20 +54,24 @@ void Roster::set_ways(int robot, bool restored) {
   std::size_t next = 0;
   for (int at = 1; at <= timeline_.tasks_in(robot) + 1; ++at) {
     const Visit& visit = timeline_.stop(robot, at);
-    double seconds = 0.0;
+    WayIn way;
     int place = timeline_.stop(robot, at - 1).place;
     for (; next < calls.size() && calls[next].at == at - 1; ++next) {
       const Call& call = calls[next];
       const int there = problem_.place_of_station(call.station);
-      seconds += problem_.travel_time(robot, place, there) + call.waits_s + call.takes_s;
+      const double leg = problem_.travel_time(robot, place, there);
+      way.seconds += leg + call.waits_s + call.takes_s;
+      if (problem_.rests(robot)) way.legs.push_back({leg, call.waits_s + call.takes_s});
       place = there;
     }
     const bool goes_there = visit.unit >= 0 || problem_.must_end(robot);
-    if (goes_there) seconds += problem_.travel_time(robot, place, visit.place);
+    const double last = goes_there ? problem_.travel_time(robot, place, visit.place) : 0.0;
+    way.seconds += last;
+    if (!way.legs.empty()) way.last = last;
     if (restored) {
-      timeline_.restore_way(robot, at, seconds);
+      timeline_.restore_way(robot, at, way);
     } else {
-      timeline_.set_way(robot, at, seconds);
+      timeline_.set_way(robot, at, way);
     }
   }
 }
@@ -79,7 +83,8 @@ void Roster::add_calls(int robot, int at, std::vector<StopTimes>& stops) const {
   for (const Call& call : calls_->calls(robot)) {
     if (call.at != at - 1) continue;
     const int there = problem_.place_of_station(call.station);
-    const double arrive = time + problem_.travel_time(robot, place, there), begin = arrive + call.waits_s;
+    const double arrive = problem_.arrives(robot, time, problem_.travel_time(robot, place, there));
+    const double begin = arrive + call.waits_s;
     stops.push_back({there, arrive, begin, begin + call.takes_s, call.refilled});
     time = begin + call.takes_s;
     place = there;
@@ -136,7 +141,7 @@ double Roster::arrival(int robot, std::size_t number) const {
   for (std::size_t k = 0; k <= number; ++k) {
     if (calls[k].at != at) continue;
     const int there = problem_.place_of_station(calls[k].station);
-    time += problem_.travel_time(robot, place, there);
+    time = problem_.arrives(robot, time, problem_.travel_time(robot, place, there));
     if (k < number) time += calls[k].waits_s + calls[k].takes_s;
     place = there;
   }

@@ -190,16 +190,26 @@ void Timeline::join(int number, int next) {
   to.last = number;
   const bool goes_there = to.unit >= 0 || problem_.must_end(to.robot);
   to.in = goes_there ? problem_.travel_time(to.robot, from.place, to.place) : 0.0;
+  if (!has_spans_) return;
+  ways_.resize(visits_.size());
+  ways_[next] = WayIn{to.in, {}, 0.0};
 }
 
-void Timeline::set_way(int robot, int at, double seconds) {
-  Visit& to = visits_[routes_[robot][at]];
-  if (to.in == seconds) return;
-  to.in = seconds;
+void Timeline::set_way(int robot, int at, const WayIn& way) {
+  const int number = routes_[robot][at];
+  const Visit& to = visits_[number];
+  if (to.in == way.seconds && (!has_spans_ || ways_[number] == way)) return;
+  restore_way(robot, at, way);
   const int last = before(to).unit;
   if (to.unit >= 0) queue_forward(to.unit);
   if (last >= 0) queue_backward(last);
   if (to.unit < 0 && last >= 0) queue_forward(last);
+}
+
+void Timeline::restore_way(int robot, int at, const WayIn& way) {
+  const int number = routes_[robot][at];
+  visits_[number].in = way.seconds;
+  if (has_spans_) ways_[number] = way;
 }
 
 // A team's task takes as long as for its slowest member.

@@ -34,6 +34,19 @@ struct Member {
   int at = 0;
 };
 
+// The way to a stop: all its seconds; of a robot that rests, and calls at stations on it, those of each leg to one, and
+// how long it stays there.
+struct WayIn {
+  struct Leg {
+    double seconds, stays;
+    bool operator==(const Leg&) const = default;
+  };
+  double seconds = 0.0;
+  std::vector<Leg> legs;
+  double last = 0.0;  // of the leg after the stations
+  bool operator==(const WayIn&) const = default;
+};
+
 // An open interval of labels.
 struct Labels {
   double low;
@@ -82,9 +95,7 @@ class Timeline {
   // When a robot leaves a stop of its route as it is: its start no sooner than its end is soon enough after that.
   double leave(int robot, int at) const { return at == 0 ? departure(robot) : stop(robot, at).leave; }
   // When a robot is at a stop that it goes to from the one before as soon as it can.
-  double arrival(const Visit& visit) const {
-    return problem_.arrives(visit.robot, leave(visit.robot, visit.at - 1), visit.in);
-  }
+  double arrival(const Visit& visit) const { return after_way(visit, leave(visit.robot, visit.at - 1)); }
 
   // What the prerequisites and dependants of a unit that is absent allow; those absent too pass on what they wait for.
   Labels labels_for(int unit);
@@ -104,9 +115,9 @@ class Timeline {
 
   std::span<const double> works() const { return work_; }
   // The way to a stop takes so long, with what the robot does on it. Begins are propagated later, as of `insert`.
-  void set_way(int robot, int at, double seconds);
+  void set_way(int robot, int at, const WayIn& way);
   // The same, where all times are already those of these ways.
-  void restore_way(int robot, int at, double seconds) { visits_[routes_[robot][at]].in = seconds; }
+  void restore_way(int robot, int at, const WayIn& way);
 
   // Both leave times as they were until `settle`. A unit goes in at a label between those of its neighbours in every
   // route, within `labels_for`, and below that of the unit `before`, if there is any.
@@ -197,6 +208,8 @@ class Timeline {
   bool has_cycles() const { return has_gap_most_ || has_lasts_most_; }
   bool settle_cycles();
   double departure(int robot) const;
+  double after_way(const Visit& visit, double leave) const;
+  double before_way(const Visit& visit, double latest) const;
   double earliest_begin(int unit);
   double begin_of_spans(int unit, double earliest) const;
   double latest_begin(int unit);
@@ -213,6 +226,7 @@ class Timeline {
   bool looks_back_;
   Arcs before_, behind_;       // by unit: prerequisites, dependants
   std::vector<Visit> visits_;  // starts, ends, then those of tasks
+  std::vector<WayIn> ways_;      // by visit, where robots rest: that with calls at stations, else empty
   std::vector<int> free_;
   std::vector<std::vector<int>> routes_;
   std::vector<Node> nodes_;

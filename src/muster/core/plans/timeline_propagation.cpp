@@ -38,7 +38,28 @@ double Timeline::departure(int robot) const {
   const Visit& start = visits_[robot];
   if (!has_lasts_most_ || tasks_in(robot) == 0 || problem_.lasts_most(robot) == kNever) return start.leave;
   const Visit& end = visits_[routes_[robot].back()];
-  return std::max(start.leave, problem_.arrives(robot, before(end).leave, end.in) - problem_.lasts_most(robot));
+  return std::max(start.leave, after_way(end, before(end).leave) - problem_.lasts_most(robot));
+}
+
+// When a robot that leaves the stop before at a time is at a stop.
+double Timeline::after_way(const Visit& visit, double leave) const {
+  if (!has_spans_) return leave + visit.in;
+  const WayIn& way = ways_[&visit - visits_.data()];
+  if (way.legs.empty()) return problem_.arrives(visit.robot, leave, visit.in);
+  for (const WayIn::Leg& leg : way.legs) leave = problem_.arrives(visit.robot, leave, leg.seconds) + leg.stays;
+  return problem_.arrives(visit.robot, leave, way.last);
+}
+
+// When it must leave that stop at the latest, to be here by a time.
+double Timeline::before_way(const Visit& visit, double latest) const {
+  if (!has_spans_) return latest - visit.in;
+  const WayIn& way = ways_[&visit - visits_.data()];
+  if (way.legs.empty()) return problem_.last_set_out(visit.robot, latest, visit.in);
+  latest = problem_.last_set_out(visit.robot, latest, way.last);
+  for (auto leg = way.legs.rbegin(); leg != way.legs.rend(); ++leg) {
+    latest = problem_.last_set_out(visit.robot, latest - leg->stays, leg->seconds);
+  }
+  return latest;
 }
 
 double Timeline::earliest_begin(int unit) {
@@ -75,7 +96,7 @@ double Timeline::latest_begin(int unit) {
   for (const int number : nodes_[unit].visits) {
     const Visit& visit = visits_[number];
     const Visit& next = behind(visit);
-    const double bound = problem_.last_set_out(visit.robot, next.latest, next.in) - work_[visit.place];
+    const double bound = before_way(next, next.latest) - work_[visit.place];
     latest = std::min(latest, problem_.last_begin(visit.place, bound));
   }
   for (const int number : has_spans_ ? visits_of(unit) : std::span<const int>()) {
@@ -125,7 +146,7 @@ bool Timeline::keeps_bounds(int unit) const {
     if (!in_time(visit.leave, problem_.ends_by(visit.place))) return false;
     const Visit& next = behind(visit);
     if (next.unit >= 0) continue;
-    const double over = problem_.arrives(visit.robot, visit.leave, next.in);
+    const double over = after_way(next, visit.leave);
     if (over == kNever || !in_time(over, next.latest)) return false;
   }
   return true;
@@ -237,8 +258,7 @@ double Timeline::end_of_route(int robot) const {
   const auto& route = routes_[robot];
   if (route.size() == 2) return 0.0;
   const Visit& last = visits_[route[route.size() - 2]];
-  if (!problem_.makespan_includes_return()) return last.leave;
-  return problem_.arrives(robot, last.leave, visits_[route.back()].in);
+  return problem_.makespan_includes_return() ? after_way(visits_[route.back()], last.leave) : last.leave;
 }
 
 double Timeline::end() const {

@@ -20,6 +20,8 @@ from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 from muster.state.robot_events import RobotFails
 from muster.state.robots import KnownRobot
 
+_ROUNDING_S = 1e-6
+
 
 class Activity(Enum):
     """What a robot is doing."""
@@ -129,6 +131,14 @@ class RobotState:
     def call(self) -> Call | None:
         """Its next call, where that comes before its next task."""
         return next_call(self.route, self.calls)
+
+    def rests(self, way_s: float, now: float) -> bool:
+        """Whether it does not set out yet on a way of so many seconds, as a later shift lasts until its end."""
+        begins = self.robot.set_out(now, way_s)
+        if begins == math.inf or begins <= now + _ROUNDING_S:
+            return False
+        self.rests_until_s = begins
+        return True
 
     def leave_out(self, gone: Container[str]) -> None:
         """Take tasks out of its route; what it was to charge before them it charges before the next."""

@@ -10,7 +10,7 @@ from typing import TypedDict
 from muster.execution.record import Tell
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.station_calls import Call
-from muster.execution.robots.task_motion import along, place
+from muster.execution.robots.task_motion import along, place, travel_s
 from muster.execution.stations.energy_watch import has_tasks_without_robot
 from muster.execution.stations.slots import Stations
 from muster.motion.port import Place, Waypoint
@@ -91,8 +91,10 @@ class StationService:
         return self.stations.finds_slot(state, now, least_s)
 
     def _drive(self, state: RobotState, now: float) -> None:
-        state.away, state.wait_words = False, ""
         way = self.way(state, self._place(state))
+        if way is not None and state.rests(travel_s(state.times, state.position, along(way)), now):
+            return
+        state.away, state.wait_words = False, ""
         if way is None:
             state.stop(now)
             self.ask(StationUnreachable(station=state.station, robot=state.robot.id))
