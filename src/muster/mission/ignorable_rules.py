@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import ParameterError
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
+
+if TYPE_CHECKING:
+    from muster.mission.robots import Robot
+    from muster.mission.tasks import Task
 
 IGNORABLE = (
     *("prerequisite", "suitability", "skill", "lock", "capacity"),
@@ -15,6 +21,20 @@ IGNORABLE = (
 _AS_THEY_ARE = ("suitability", "lock", "capacity", "battery", "min-tasks")
 _PLURALS = {f"{rule}s": rule for rule in IGNORABLE if rule not in _AS_THEY_ARE}
 """Words of earlier files and commands, read as before; and the like of the others."""
+_TASKS_WITHOUT: Mapping[str, Mapping[str, Any]] = {
+    "window": {"window_s": ()},
+    "deadline": {"deadline_s": None},
+    "team": {"robots_needed": None, "team": (), "needs": None},
+    "relation": {"same_robot_as": (), "other_robot_than": (), "starts_with": ()},
+    "prerequisite": {"lags": {}},
+    "load": {"load": None, "delivers": None},
+}
+_ROBOTS_WITHOUT: Mapping[str, Mapping[str, Any]] = {
+    "shift": {"available_until_s": None},
+    "battery": {"battery": None},
+    "load": {"load_capacity": None, "load_at_start": None},
+}
+"""By rule what the keys of tasks and robots are without it."""
 
 
 def ignorable_rule(word: object) -> str | None:
@@ -42,3 +62,15 @@ def ignored_rules(words: str | Collection[str]) -> tuple[str, ...]:
             )
         named.add(rule)
     return tuple(rule for rule in IGNORABLE if rule in named)
+
+
+def task_as_it_holds(task: Task, ignored: Collection[str]) -> Task:
+    """A task without the rules about time, teams and goods that do not hold."""
+    without = {key: value for rule in ignored for key, value in _TASKS_WITHOUT.get(rule, {}).items()}
+    return replace(task, **without) if without else task
+
+
+def robot_as_it_holds(robot: Robot, ignored: Collection[str]) -> Robot:
+    """A robot without the rules about time, energy and goods that do not hold."""
+    without = {key: value for rule in ignored for key, value in _ROBOTS_WITHOUT.get(rule, {}).items()}
+    return replace(robot, **without) if without else robot

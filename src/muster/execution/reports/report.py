@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
+from muster.execution.reports.robot_report import RobotReport, StationAccount
 from muster.mission.objectives import lateness, objective_values
 from muster.mission.tables import data_frame, html_line, html_table
 from muster.state.orders import OrdersReport
@@ -14,26 +15,6 @@ from muster.state.traffic_account import TrafficAccount
 
 if TYPE_CHECKING:
     from pandas import DataFrame
-
-
-@dataclass(frozen=True)
-class StationAccount:
-    """What one robot did at stations.
-
-    Parameters
-    ----------
-    least_charge
-        the least share of its battery that was left; None: it has none.
-    charged
-        what was added to it, in the unit of usage.
-    visits, waited_s
-        how often it was served, and for how long it waited for slots.
-    """
-
-    least_charge: float | None
-    charged: float
-    visits: int
-    waited_s: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,10 +32,10 @@ class Account:
         part of it that was carried out.
     mission_time_s, reallocations, done_twice
         as in `Report`.
-    charges
-        by robot the share of its battery that it last reported, of those that do.
+    energy_left
+        by robot the share of its energy that it last reported, of those that do.
     stations
-        by robot with a battery, or that was at a station, what it did there.
+        by robot that usage empties, or that was at a station, what it did there.
     shifts_exceeded_s
         by robot how long it was under way after its shift, of those that were.
     back_s
@@ -77,32 +58,13 @@ class Account:
     reallocations: int
     planned_so_far: Mapping[str, float] = field(default_factory=dict)
     done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    charges: Mapping[str, float] = field(default_factory=dict)
+    energy_left: Mapping[str, float] = field(default_factory=dict)
     stations: Mapping[str, StationAccount] = field(default_factory=dict)
     shifts_exceeded_s: Mapping[str, float] = field(default_factory=dict)
     back_s: tuple[float, ...] = ()
     traffic: TrafficAccount = field(default_factory=TrafficAccount)
     waits_s: Mapping[str, float] = field(default_factory=dict)
     orders: OrdersReport | None = None
-
-
-@dataclass(frozen=True)
-class RobotReport:
-    """Usage of one robot in the mission's unit: of the plan that it began with, and measured. 0 planned: it joined.
-
-    `charge` is the share of its battery that was left at last; None where it has none that reports. `least_charge` is
-    the least share, `charged` what was added at stations, in the mission's unit, `station_visits` how often it was
-    served there, and `slot_wait_s` for how long it waited for that; None and 0 of a robot that does not charge.
-    """
-
-    robot: str
-    usage_planned: float
-    usage_flown: float
-    charge: float | None = None
-    least_charge: float | None = None
-    charged: float = 0.0
-    station_visits: int = 0
-    slot_wait_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -336,13 +298,8 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
 
 
 def _robot(account: Account, robot: str, used: float) -> RobotReport:
-    row = RobotReport(robot, account.usage_planned.get(robot, 0.0), used, account.charges.get(robot))
-    at = account.stations.get(robot)
-    if at is None:
-        return row
-    return replace(
-        row, least_charge=at.least_charge, charged=at.charged, station_visits=at.visits, slot_wait_s=at.waited_s
-    )
+    planned, left = account.usage_planned.get(robot, 0.0), account.energy_left.get(robot)
+    return RobotReport.of(robot, planned, used, left, account.stations.get(robot))
 
 
 def _task(ledger: Ledger, task: str) -> TaskReport:

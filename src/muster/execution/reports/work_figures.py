@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from muster.execution.reports.report import StationAccount
+from muster.execution.reports.robot_report import StationAccount
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.state.task_ledger import TIME_ROUNDING_S
 
 
 def at_stations(state: RobotState) -> StationAccount | None:
-    """What a robot did at stations; None of one that has no battery and was at none."""
+    """What a robot did at stations; None of one that usage does not empty and that was at none."""
     energy = state.energy
     if energy is None and not state.visits:
         return None
-    least, charged = (None, 0.0) if energy is None else (energy.least / energy.battery.capacity, energy.charged)
-    return StationAccount(least, charged, state.visits, state.slot_wait_s)
+    least, added = (None, 0.0) if energy is None else (energy.lowest / energy.capacity, energy.added)
+    return StationAccount(least, added, state.visits, state.slot_wait_s)
 
 
 def shifts_exceeded_s(worked: Iterable[RobotState], now: float) -> dict[str, float]:

@@ -1,14 +1,17 @@
-"""Batteries of simulated robots: what each begins with, what drains it, and what it reports."""
+"""The energy of simulated robots: what each begins with, what drains it, and how it is asked for."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Self
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.mission.texts.near_matches import did_you_mean
+from muster.model.energy import EnergyLevel
 
 ALL = "all"
 """Stands for every robot in the place of an id."""
@@ -21,6 +24,8 @@ Drains = ByRobot
 """How many times as fast as by usage the battery of a robot drains; 1 for who is not named."""
 NO_CHARGES: Charges = MappingProxyType({})
 NO_DRAINS: Drains = MappingProxyType({})
+LACKS_ENERGY = dict.fromkeys(("batteries", "drain"), "expected none: the world {world} has no batteries")
+"""The settings of worlds about energy, and what is said of a world that does not take one."""
 
 
 def require_charges(charges: Charges, robots: Collection[str]) -> None:
@@ -69,15 +74,13 @@ def drain_of(drains: Drains, robot: str) -> float:
 
 
 def capacity_in_usage(robot: Robot) -> float:
-    """What a full battery lets a robot use, in the unit of usage: its battery's capacity, else its work capacity.
+    """What a full battery lets a robot use that has none by the mission: its work capacity, in the unit of usage.
 
     Raises
     ------
     ParameterError
-        if the mission says neither.
+        if the mission does not say that either.
     """
-    if robot.battery is not None:
-        return robot.battery.capacity
     if robot.work_capacity is None or robot.work_capacity == 0:
         raise ParameterError(
             f"battery: robot {robot.id} has no work_capacity; expected one, which is what its battery holds in the "
@@ -86,44 +89,22 @@ def capacity_in_usage(robot: Robot) -> float:
     return robot.work_capacity
 
 
-class Battery:
-    """The battery of one robot.
+@dataclass
+class SimulatedEnergy(EnergyLevel):
+    """What one simulated robot holds.
 
     Parameters
     ----------
-    capacity
-        what it holds when it is full.
-    at_start
-        the share that it begins with.
-    drained
-        returns what was drained so far, in the unit of the capacity.
+    used
+        returns the robot's usage so far, in the unit of the capacity.
     drain
-        times that.
+        how many times as fast as that it falls.
     """
 
-    def __init__(self, capacity: float, at_start: float, drained: Callable[[], float], drain: float = 1.0) -> None:
-        self.capacity, self.drain = capacity, drain
-        self._level, self._drained = at_start * capacity, drained
-        self._seen: float | None = None
+    used: Callable[[], float]
+    drain: float = 1.0
 
-    @property
-    def level(self) -> float:
-        """What is left; an empty battery stays empty until it is charged."""
-        drained = self._drained()
-        more = drained if self._seen is None else drained - self._seen
-        self._seen = drained
-        self._level = max(0.0, self._level - self.drain * more)
-        return self._level
-
-    @property
-    def charge(self) -> float:
-        """The share that is left."""
-        return self.level / self.capacity
-
-    def add(self, amount: float) -> None:
-        """Charge it, until it is full."""
-        self._level = min(self.capacity, self.level + amount)
-
-    def fill(self) -> None:
-        """Put a full one in its place."""
-        self.add(self.capacity)
+    def look(self) -> Self:
+        """Take off what was used since the last look; who is empty stays empty until a station adds some."""
+        self.lower(self.drain * self.count(self.used()))
+        return self
