@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import MISSING, fields, replace
+from typing import TYPE_CHECKING, TypeVar
 
 from muster.mission.errors import ParameterError
 from muster.mission.texts.near_matches import did_you_mean
@@ -21,20 +21,18 @@ IGNORABLE = (
 _AS_THEY_ARE = ("suitability", "lock", "capacity", "battery", "min-tasks")
 _PLURALS = {f"{rule}s": rule for rule in IGNORABLE if rule not in _AS_THEY_ARE}
 """Words of earlier files and commands, read as before; and the like of the others."""
-_TASKS_WITHOUT: Mapping[str, Mapping[str, Any]] = {
-    "window": {"window_s": ()},
-    "deadline": {"deadline_s": None},
-    "team": {"robots_needed": None, "team": (), "needs": None},
-    "relation": {"same_robot_as": (), "other_robot_than": (), "starts_with": ()},
-    "prerequisite": {"lags": {}},
-    "load": {"load": None, "delivers": None},
+_KEYS: Mapping[str, tuple[str, ...]] = {
+    "prerequisite": ("lags",),
+    "window": ("window_s",),
+    "deadline": ("deadline_s",),
+    "shift": ("available_until_s",),
+    "team": ("robots_needed", "team", "needs"),
+    "relation": ("same_robot_as", "other_robot_than", "starts_with"),
+    "load": ("load", "delivers", "load_capacity", "load_at_start"),
+    "battery": ("battery",),
 }
-_ROBOTS_WITHOUT: Mapping[str, Mapping[str, Any]] = {
-    "shift": {"available_until_s": None},
-    "battery": {"battery": None},
-    "load": {"load_capacity": None, "load_at_start": None},
-}
-"""By rule what the keys of tasks and robots are without it."""
+"""By rule the keys of tasks and robots that are as by default where it does not hold."""
+T = TypeVar("T", "Task", "Robot")
 
 
 def ignorable_rule(word: object) -> str | None:
@@ -64,13 +62,8 @@ def ignored_rules(words: str | Collection[str]) -> tuple[str, ...]:
     return tuple(rule for rule in IGNORABLE if rule in named)
 
 
-def task_as_it_holds(task: Task, ignored: Collection[str]) -> Task:
-    """A task without the rules about time, teams and goods that do not hold."""
-    without = {key: value for rule in ignored for key, value in _TASKS_WITHOUT.get(rule, {}).items()}
-    return replace(task, **without) if without else task
-
-
-def robot_as_it_holds(robot: Robot, ignored: Collection[str]) -> Robot:
-    """A robot without the rules about time, energy and goods that do not hold."""
-    without = {key: value for rule in ignored for key, value in _ROBOTS_WITHOUT.get(rule, {}).items()}
-    return replace(robot, **without) if without else robot
+def as_it_holds(item: T, ignored: Collection[str]) -> T:
+    """A task or robot without the rules that do not hold about times, teams, goods and energy."""
+    keys = {key for rule in ignored for key in _KEYS.get(rule, ())}
+    without = {f.name: {} if f.default is MISSING else f.default for f in fields(item) if f.name in keys}
+    return replace(item, **without) if without else item

@@ -69,14 +69,9 @@ def refilled_to(problem: Problem, i: int, stops: Sequence[RouteStop], usages: Se
     shares: list[float | None] = []
     for stop, usage in zip(stops, usages, strict=True):
         level -= usage
-        share = None
-        if not stop.is_station:
-            if stop.name in past:
-                shares = [before and level / energy.capacity for before in shares]
-        elif stop.charged is not None:
-            level = min(energy.capacity, level + stop.charged)
-            share = level / energy.capacity
-        elif stop.name in filling:
-            level = energy.capacity
-        shares.append(share)
+        if stop.name in past:
+            shares = [before and level / energy.capacity for before in shares]
+        if stop.charged is not None or stop.name in filling:
+            level = min(energy.capacity, level + (math.inf if stop.charged is None else stop.charged))
+        shares.append(None if stop.charged is None else level / energy.capacity)
     return shares

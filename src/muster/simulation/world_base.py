@@ -32,18 +32,7 @@ from muster.motion.noise import NO_NOISE, Noise
 from muster.motion.order_trajectory import TrajectoryMaker
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.perception.laser import NO_DISCS, Scanner
-from muster.simulation.energy import (
-    NO_CHARGES,
-    NO_DRAINS,
-    Charges,
-    Drains,
-    SimulatedEnergy,
-    capacity_in_usage,
-    charge_at_start,
-    drain_of,
-    require_charges,
-    require_drains,
-)
+from muster.simulation.energy import NONE, ByRobot, SimulatedEnergy, capacity_in_usage, of_robot, require_by_robot
 from muster.simulation.port import Serving, SimulatedPort
 from muster.simulation.station_service import LOOK_S, WorldStations
 from muster.simulation.walls import Slab, faces_and_slabs
@@ -135,8 +124,8 @@ class WorldBase(SimulatedWorld, ABC):
         law: str = "profile",
         horizon_s: float = 2.0,
         arrival_m: float = 0.02,
-        batteries: Charges = NO_CHARGES,
-        drain: Drains = NO_DRAINS,
+        batteries: ByRobot = NONE,
+        drain: ByRobot = NONE,
         observer: Observer | None = None,
         observe_s: float = 0.0,
         snapshot: Mapping[str, Any] | None = None,
@@ -173,8 +162,8 @@ class WorldBase(SimulatedWorld, ABC):
         if snapshot is not None:
             batteries = {**batteries, **snapshot["charges"]}
             self._crowd.resume(math.ceil(snapshot["time_s"] / dt_s - 1e-6), [])
-        require_charges(batteries, [robot.id for robot in mission.all_robots])
-        require_drains(drain, [robot.id for robot in mission.all_robots])
+        for what, given in (("battery", batteries), ("drain", drain)):
+            require_by_robot(what, given, [robot.id for robot in mission.all_robots])
         self._batteries, self._drain = batteries, drain
         self._stations = WorldStations.of(mission.stations)
         self._moving_s: dict[str, float] = {}  # of robots with a battery of the mission
@@ -253,15 +242,14 @@ class WorldBase(SimulatedWorld, ABC):
         trajectories = self._trajectories_of(robot)
         port = SimulatedPort(robot, number, self._crowd, self._noise, self._seed, trajectories, self._name_of)
         self._ports[robot.id] = port
-        at_start = charge_at_start(self._batteries, robot)
+        at_start = of_robot(self._batteries, robot.id, None if robot.battery is None else robot.battery.at_start)
         if at_start is not None:
             self._put_in(port, robot, at_start)
         return port
 
     def _put_in(self, port: SimulatedPort, robot: Robot, at_start: float) -> None:
         """Give a robot its battery: of the mission, drained by usage; else as the world has it."""
-        drain = drain_of(self._drain, robot.id)
-        energy = Energy.of(robot)
+        energy, drain = Energy.of(robot), of_robot(self._drain, robot.id, 1.0)
         if energy is None:
             capacity, used = 1.0, self._drained_by(robot, self._number(robot.id))
         else:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from muster.mission.goods import as_amount
-from muster.mission.ignorable_rules import robot_as_it_holds, task_as_it_holds
+from muster.mission.ignorable_rules import as_it_holds
 from muster.mission.model import Point, Robot, Task
 from muster.mission.task_relations import units_of
 from muster.state.reasons import cancelled_at, some_of
@@ -122,7 +122,7 @@ class Ledger:
 
         One that comes too late to begin with another can never begin. It is tied to none: no other waits for it.
         """
-        task = task_as_it_holds(task, self.ignored)
+        task = as_it_holds(task, self.ignored)
         if late := self.too_late_to_begin_with(task.starts_with):
             self.expired[task.id] = late
             task = replace(task, starts_with=())
@@ -132,7 +132,7 @@ class Ledger:
 
     def as_it_holds(self, robot: Robot) -> Robot:
         """A robot without what does not hold."""
-        return robot_as_it_holds(robot, self.ignored)
+        return as_it_holds(robot, self.ignored)
 
     def too_late_to_begin_with(self, tasks: Iterable[str]) -> str:
         """Why nothing can begin together with these tasks any more; empty if it still can."""

@@ -15,7 +15,7 @@ from muster.execution.robots.station_calls import with_calls
 from muster.execution.stations.slots import AT_STATION, Stations
 from muster.execution.stations.station_service import level_after_service
 from muster.mission.errors import ParameterError
-from muster.mission.ignorable_rules import task_as_it_holds
+from muster.mission.ignorable_rules import as_it_holds
 from muster.mission.model import Mission, Robot
 from muster.mission.plan import Plan, Reason, Route, RouteStop, Unassigned
 from muster.mission.value_types import shown
@@ -33,7 +33,7 @@ def required_routes(mission: Mission, plan: Plan) -> dict[str, tuple[RouteStop, 
         for robots and tasks that there are not, or that stand twice.
     """
     robots = {robot.id for robot in mission.robots}
-    tasks = {task.id: task_as_it_holds(task, plan.ignored).is_for_team for task in mission.tasks}
+    tasks = {task.id: as_it_holds(task, plan.ignored).is_for_team for task in mission.tasks}
     seen: set[str] = set()
     stations = {station.id for station in mission.stations}
     routes: dict[str, tuple[RouteStop, ...]] = {}

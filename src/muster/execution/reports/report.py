@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
-from muster.execution.reports.robot_report import RobotReport, StationAccount
+from muster.execution.reports.robot_report import RobotReport
 from muster.mission.objectives import lateness, objective_values
 from muster.mission.tables import data_frame, html_line, html_table
 from muster.state.orders import OrdersReport
@@ -27,15 +27,12 @@ class Account:
         by name, and by the plan that the mission began with, None where that does not tell.
     ledger, lost
         of the tasks; why each task is lost that is.
-    used, usage_planned, planned_so_far
-        by robot, in the mission's unit: measured; by the plan that the mission began with, 0 of who joined; and of the
-        part of it that was carried out.
+    robots
+        by id what each used, and did at stations.
+    planned_so_far
+        by robot the usage, in the mission's unit, of the part of the plan that was carried out.
     mission_time_s, reallocations, done_twice
         as in `Report`.
-    energy_left
-        by robot the share of its energy that it last reported, of those that do.
-    stations
-        by robot that usage empties, or that was at a station, what it did there.
     shifts_exceeded_s
         by robot how long it was under way after its shift, of those that were.
     back_s
@@ -52,14 +49,11 @@ class Account:
     objective_planned: float | None
     ledger: Ledger
     lost: Mapping[str, str]
-    used: Mapping[str, float]
-    usage_planned: Mapping[str, float]
+    robots: Mapping[str, RobotReport]
     mission_time_s: float
     reallocations: int
     planned_so_far: Mapping[str, float] = field(default_factory=dict)
     done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    energy_left: Mapping[str, float] = field(default_factory=dict)
-    stations: Mapping[str, StationAccount] = field(default_factory=dict)
     shifts_exceeded_s: Mapping[str, float] = field(default_factory=dict)
     back_s: tuple[float, ...] = ()
     traffic: TrafficAccount = field(default_factory=TrafficAccount)
@@ -279,7 +273,7 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         min_distance_m=min_distance_m,
         waiting_s=ledger.waiting_s + account.traffic.waiting_s + _slot_wait_s(account),
         reallocations=account.reallocations,
-        robots=tuple(_robot(account, robot, used) for robot, used in account.used.items()),
+        robots=tuple(account.robots.values()),
         starts_s={task: ledger.starts_s[task] for task in done},
         ends_s={task: ledger.ends_s[task] for task in done},
         objective=_objective(account),
@@ -295,11 +289,6 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         orders=account.orders,
         tasks_forgotten=_forgotten(ledger),
     )
-
-
-def _robot(account: Account, robot: str, used: float) -> RobotReport:
-    planned, left = account.usage_planned.get(robot, 0.0), account.energy_left.get(robot)
-    return RobotReport.of(robot, planned, used, left, account.stations.get(robot))
 
 
 def _task(ledger: Ledger, task: str) -> TaskReport:
@@ -332,7 +321,7 @@ def _waiting_by_cause(account: Account) -> dict[str, float]:
 
 
 def _slot_wait_s(account: Account) -> float:
-    return sum(one.waited_s for one in account.stations.values())
+    return sum(row.slot_wait_s for row in account.robots.values())
 
 
 def _forgotten(ledger: Ledger) -> dict[str, int]:
@@ -347,7 +336,8 @@ def _objective(account: Account) -> ObjectiveReport:
     arrivals = [ledger.arrival_usage[task] for task in ledger.ends_s]
     late = lateness((ledger.tasks[task].priority, end, ledger.tasks[task].due_s) for task, end in ledger.ends_s.items())
     ends_s = [*ledger.ends_s.values(), sums.last_end_s, *account.back_s]
-    flown = objective_values(account.used.values(), arrivals, ends_s, late + sums.lateness)
+    usages = [row.usage_flown for row in account.robots.values()]
+    flown = objective_values(usages, arrivals, ends_s, late + sums.lateness)
     if sums.done:
         flown["average"] = (sum(arrivals) + sums.arrival_usage) / (len(arrivals) + sums.done)
     return ObjectiveReport(account.objective, account.objective_planned, flown[account.objective])

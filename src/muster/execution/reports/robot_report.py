@@ -6,26 +6,6 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class StationAccount:
-    """What one robot did at stations.
-
-    Parameters
-    ----------
-    least_share
-        the least share of its energy that was left; None: usage does not empty it.
-    added
-        what it got, in the unit of usage.
-    visits, waited_s
-        how often it was served, and for how long it waited for slots.
-    """
-
-    least_share: float | None
-    added: float
-    visits: int
-    waited_s: float
-
-
-@dataclass(frozen=True)
 class RobotReport:
     """Usage of one robot in the mission's unit: of the plan that it began with, and measured. 0 planned: it joined.
 
@@ -42,10 +22,3 @@ class RobotReport:
     charged: float = 0.0
     station_visits: int = 0
     slot_wait_s: float = 0.0
-
-    @classmethod
-    def of(cls, robot: str, planned: float, flown: float, left: float | None, at: StationAccount | None) -> RobotReport:
-        """Return the row of a robot with a share of its energy left, None: not known; None of stations: no account."""
-        if at is None:
-            return cls(robot, planned, flown, left)
-        return cls(robot, planned, flown, left, at.least_share, at.added, at.visits, at.waited_s)
