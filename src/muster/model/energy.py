@@ -36,11 +36,6 @@ class Energy:
         battery = robot.battery
         return None if battery is None else cls(battery.capacity, battery.level_at_start, battery.least)
 
-    @property
-    def room(self) -> float:
-        """What a full robot can use."""
-        return self.capacity - self.least
-
 
 @dataclass(frozen=True)
 class Refill:
@@ -106,15 +101,14 @@ class EnergyLevel:
         """What can be added."""
         return max(0.0, self.capacity - self.level)
 
-    def count(self, used: float) -> float:
-        """Return how much has been used since the last count, by the robot's usage so far."""
-        more = 0.0 if self.counted is None else max(0.0, used - self.counted)
-        self.counted = used
-        return more
+    def spend(self, used: float, drain: float = 1.0) -> float:
+        """Lower the level by what has been used since the last time, `drain` times, and return that usage.
 
-    def lower(self, amount: float) -> None:
-        """Take off what was used."""
-        self.level = max(0.0, self.level - amount)
+        `used` is the robot's usage so far.
+        """
+        more = 0.0 if self.counted is None else max(0.0, used - self.counted)
+        self.counted, self.level = used, max(0.0, self.level - drain * more)
+        return more
 
     def add(self, amount: float) -> None:
         """Add energy until the robot is full."""

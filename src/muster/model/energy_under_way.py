@@ -13,7 +13,7 @@ from muster.model.problem import Problem
 _MOST_RESERVE = 0.9  # share of the capacity that is kept for the way to a station at most
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Held:
     """What a robot holds, in the unit of usage.
 
@@ -25,27 +25,30 @@ class Held:
         How much it loses for a unit of planned usage.
     used : float
         The usage of its past, which is the beginning of its route.
-    kept : float
-        What it keeps beside its reserve.
     """
 
     level: float
     drain: float
     used: float
-    kept: float = 0.0
 
 
-def with_held(problem: Problem, held: Sequence[Held | None]) -> Problem:
-    """Return the problem with what robots hold before their past, measured by how fast that drains; None: unbounded."""
+def with_held(problem: Problem, held: Sequence[Held | None], kept: Sequence[float]) -> Problem:
+    """Return the problem with what robots hold before their past, measured by how fast that drains; None: unbounded.
+
+    Parameters
+    ----------
+    kept : sequence of float
+        What each keeps beside its reserve.
+    """
     if not problem.holds("battery"):
         return problem
     robots, levels = [], []
-    for robot, now in zip(problem.robots, held, strict=True):
+    for robot, now, more in zip(problem.robots, held, kept, strict=True):
         if robot.battery is None or now is None:
             robots.append(robot)
             levels.append(math.inf)
             continue
-        capacity, least = robot.battery.capacity / now.drain, robot.battery.least / now.drain + now.kept
+        capacity, least = robot.battery.capacity / now.drain, robot.battery.least / now.drain + more
         battery = replace(robot.battery, capacity=capacity, reserve=min(least / capacity, _MOST_RESERVE))
         robots.append(replace(robot, battery=battery))
         levels.append(max(now.level / now.drain, battery.least) + now.used)

@@ -25,10 +25,7 @@ SETTINGS: Mapping[str, str] = {
     "rotor_level": "expected the world {others}: {world} has no rotors",
     "snapshot": "expected none: the world {world} cannot be resumed",
 }
-"""Keyword arguments that a world may take beside those of all worlds, and what is said of one that does not take it.
-
-`others` are the worlds that do.
-"""
+"""Keyword arguments that worlds may take beside those of all, and what is said of one that does not, if `others` do."""
 
 M = TypeVar("M", bound=Callable[..., object])
 

@@ -83,5 +83,5 @@ class SimulatedEnergy(EnergyLevel):
 
     def look(self) -> Self:
         """Take off what was used since the last look; who is empty stays empty until a station adds some."""
-        self.lower(self.drain * self.count(self.used()))
+        self.spend(self.used(), self.drain)
         return self

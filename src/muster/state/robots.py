@@ -58,10 +58,7 @@ class KnownRobot:
     @property
     def energy_left(self) -> tuple[float, float] | None:
         """The share of its energy that it held last, and its usage since; None: it has not told of it."""
-        if self.charge is None:
-            return None
-        share, then = self.charge
-        return share, (self.used or then) - then
+        return None if self.charge is None else (self.charge[0], (self.used or self.charge[1]) - self.charge[1])
 
     def end(self, task: str, planned: float) -> None:
         """It has done a task, or its part of it."""

@@ -49,10 +49,8 @@ class RobotSnapshot:
         the work under way; None: there is none.
     measured
         what of its energy is left, as it last reported; None: it does not report that.
-    level
-        what it holds then, in the unit of usage; None: usage does not empty it.
-    drain
-        how fast that falls, times the usage.
+    energy
+        what it holds then; None: usage does not empty it.
     load
         what it has on board then, by commodity.
     """
@@ -64,8 +62,7 @@ class RobotSnapshot:
     used: float
     task: str | None
     measured: EnergyLeft | None = None
-    level: float | None = None
-    drain: float = 1.0
+    energy: Held | None = None
     load: Mapping[str, float] = field(default_factory=dict)
 
     @property
@@ -164,26 +161,21 @@ def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
     known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
     problem = _delayed(rest, replace(problem, known=known))
-    problem = _with_levels(rest, _bearable(problem, past))
-    problem = replace(problem, aboard=_aboard(rest, problem))
+    problem = _with_energy(rest, _bearable(problem, past))
     measured = {snapshot.robot.id: snapshot.measured for snapshot in rest.crew}
-    if any(left is not None for left in measured.values()):
-        problem = replace(problem, energy_left=tuple(measured[robot.id] for robot in problem.robots))
+    energy_left = tuple(measured[robot.id] for robot in problem.robots)
+    problem = replace(problem, aboard=_aboard(rest, problem), energy_left=energy_left)
     routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
     return RemainingProblem(with_fixed_routes(_with_energy_to_end(problem, routes), Plan(routes=routes)), hopeless)
 
 
-def _with_levels(rest: RemainingMission, problem: Problem) -> Problem:
-    """With what robots hold: before the past, which is yet to be taken off, and measured by how fast that falls."""
-    crew = {snapshot.robot.id: snapshot for snapshot in rest.crew}
-    if all(snapshot.level is None for snapshot in rest.crew):
+def _with_energy(rest: RemainingMission, problem: Problem) -> Problem:
+    """With what robots hold: before the past, which is yet to be taken off."""
+    energies = {snapshot.robot.id: snapshot.energy for snapshot in rest.crew}
+    if not any(energies.values()):
         return problem
-    held: list[Held | None] = []
-    for i, robot in enumerate(problem.robots):
-        now, kept = crew[robot.id], _usage_to_station(problem, i) if rest.on_duty else 0.0
-        used = now.used if now.has_past else 0.0
-        held.append(None if now.level is None else Held(level=now.level, drain=now.drain, used=used, kept=kept))
-    return with_held(problem, held)
+    kept = [_usage_to_station(problem, i) if rest.on_duty else 0.0 for i in range(len(problem.robots))]
+    return with_held(problem, [energies[robot.id] for robot in problem.robots], kept)
 
 
 def _usage_to_station(problem: Problem, i: int) -> float:

@@ -13,12 +13,13 @@ from muster.execution.replanning.travel import Spot
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.station_calls import with_calls
 from muster.execution.stations.slots import AT_STATION, Stations
-from muster.execution.stations.station_service import level_after_service
+from muster.execution.stations.station_service import to_add
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import as_it_holds
 from muster.mission.model import Mission, Robot
 from muster.mission.plan import Plan, Reason, Route, RouteStop, Unassigned
 from muster.mission.value_types import shown
+from muster.model.energy_under_way import Held
 from muster.model.measured_energy import EnergyLeft
 from muster.state.goods_ledger import GoodsLedger
 from muster.state.task_ledger import Ledger
@@ -116,22 +117,19 @@ def _snapshot(state: RobotState, now: float, stations: Stations, load: Mapping[s
         used=state.used_after(now) if works else state.used,
         task=state.route[0] if works else None,
         measured=_measured(state),
-        level=_level(state, now, stations),
-        drain=1.0 if state.energy is None else state.energy.drain,
+        energy=_held(state, now, stations),
         load=load,
     )
 
 
-def _level(state: RobotState, now: float, stations: Stations) -> float | None:
+def _held(state: RobotState, now: float, stations: Stations) -> Held | None:
     """What a robot holds when the work or service under way is over."""
-    energy = state.energy
+    energy, works = state.energy, state.activity is Activity.WORKING
     if energy is None:
         return None
-    if state.activity is Activity.SERVED:
-        return level_after_service(stations, state)
-    if state.activity is Activity.WORKING:
-        return energy.level - energy.drain * (state.used_after(now) - state.used)
-    return energy.level
+    used = state.used_after(now) if works else state.used
+    served = to_add(stations, state) if state.activity is Activity.SERVED else 0.0
+    return Held(energy.level + served - energy.drain * (used - state.used), energy.drain, used)
 
 
 def _with_capacity(robot: Robot, capacity: float | None) -> Robot:

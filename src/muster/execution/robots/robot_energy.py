@@ -47,11 +47,6 @@ class RobotEnergy(EnergyLevel):
         return None if energy is None else cls(energy.capacity, energy.at_start, energy.least, energy.at_start)
 
     @property
-    def above_reserve(self) -> float:
-        """What it holds above its reserve."""
-        return self.level - self.reserve
-
-    @property
     def drain(self) -> float:
         """How fast it drains: times the planned usage, at least 1; 1 as long as that is not known."""
         if self._drained_over < _KNOWN_AFTER * self.capacity:
@@ -65,7 +60,7 @@ class RobotEnergy(EnergyLevel):
 
     def missing_for(self, usage: float) -> float:
         """By how much planned usage would bring it below its reserve; below 0: by as much it stays above."""
-        return self.drain * usage - self.above_reserve
+        return self.drain * usage - (self.level - self.reserve)
 
     def to_add(self, refill: Refill, until: float | None, ahead: float) -> float:
         """What a service is still to add: as planned, and what the robot has learnt to need.
@@ -88,10 +83,8 @@ class RobotEnergy(EnergyLevel):
         `served`: whether it is at a station that adds energy, or was when it was last heard.
         """
         before, first = self.level, self.counted is None
-        more = self.count(used)
-        if share is None:
-            self.lower(more)
-        else:
+        more = self.spend(used)
+        if share is not None:
             self.told, self.level = True, share * self.capacity
         if served:
             self.added += max(0.0, self.level - before)

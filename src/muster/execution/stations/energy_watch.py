@@ -59,16 +59,17 @@ class EnergyWatch:
         """Robots whose energy does not last to their next refill, or the end of their route: they are planned anew."""
         self._learn_detours()
         for state in self.crew.values():
-            if state.out or state.energy is None:
+            energy = state.energy
+            if state.out or energy is None:
                 continue
-            missing = self._missing(state, now)
-            if missing <= state.warned_short + TOLERANCE * state.energy.capacity:
+            missing = self._missing(state, energy, now)
+            if missing <= state.warned_short + TOLERANCE * energy.capacity:
                 continue
             state.warned_short = missing
             if state.activity is Activity.RETURNING:
                 state.stop(now)
                 continue
-            self.ask(EnergyLow.of(state.robot.id, state.energy.share, missing, state.energy.drain))
+            self.ask(EnergyLow.of(state.robot.id, energy.share, missing, energy.drain))
 
     def _learn_detours(self) -> None:
         """Note how much more robots use than planned, be it for others in their way, or for turns."""
@@ -81,10 +82,8 @@ class EnergyWatch:
             if state.energy is not None:
                 state.energy.detours = flown / planned if flown > _AS_PLANNED * planned > 0 else 1.0
 
-    def _missing(self, state: RobotState, now: float) -> float:
+    def _missing(self, state: RobotState, energy: RobotEnergy, now: float) -> float:
         """By how much a robot would come below its reserve before it is refilled next; below 0: it does not."""
-        energy = state.energy
-        assert energy is not None
         if state.activity is Activity.RETURNING:
             needed = state.travel_left_s if state.in_time else state.way_left_m
         elif state.activity in (Activity.DRIVING, Activity.WORKING) and state.route:
@@ -105,21 +104,20 @@ class EnergyWatch:
         energy = state.energy
         if energy is None or energy.share >= _FULL or state.refilled_idle:
             return None
-        short = self._is_short_of_home(state)
+        short = self._is_short_of_home(state, energy)
         if not (short or self.on_duty() or has_tasks_without_robot(self.ledger, self.crew)):
             return None
-        found = self._nearest(state)
+        found = self._nearest(state, energy)
         if found is not None and (short or self._is_low(energy, *found)):
             return Call(found[0].id, None, planned=False)
         return None
 
-    def _is_short_of_home(self, state: RobotState) -> bool:
+    def _is_short_of_home(self, state: RobotState, energy: RobotEnergy) -> bool:
         """Whether the energy of a robot that is to go home does not bring it there."""
         if state.home is None or state.at_home:
             return False
-        assert state.energy is not None
         home = self._usage(state, state.home)
-        return home is not None and state.energy.missing_for(home) > 0
+        return home is not None and energy.missing_for(home) > 0
 
     def _is_low(self, energy: RobotEnergy, station: Station, to_station: float) -> bool:
         """Whether a robot for which there may be work had better be refilled first."""
@@ -136,10 +134,8 @@ class EnergyWatch:
         home = self._usage(state, state.home)
         return home is None or state.energy.level >= state.energy.drain * home
 
-    def _nearest(self, state: RobotState) -> tuple[Station, float] | None:
+    def _nearest(self, state: RobotState, energy: RobotEnergy) -> tuple[Station, float] | None:
         """The station that gives energy to which a robot uses least, and that; None: it reaches none."""
-        energy = state.energy
-        assert energy is not None
         ways = [(self._usage(state, place(s.position)), s) for s in self.stations.working if s.gives_energy]
         left = energy.level - TOLERANCE * energy.capacity
         near = [(usage, s) for usage, s in ways if usage is not None and energy.drain * usage <= left]

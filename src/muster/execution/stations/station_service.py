@@ -148,7 +148,7 @@ class StationService:
         if state.energy is not None and state.energy.told and self._goes_on(state, before, now):
             return
         if state.energy is not None and not state.energy.told:
-            state.energy.add(_to_add(self.stations, state))
+            state.energy.add(to_add(self.stations, state))
         gone = self.goods.loose(state.robot.id, tied_goods(self.ledger)) if station.unloads else {}
         call = state.call
         if call is not None:
@@ -179,7 +179,7 @@ class StationService:
 
     def _goes_on(self, state: RobotState, before: float, now: float) -> bool:
         """Go on where telemetry tells that less was added than was to be, as long as anything is."""
-        missing = _to_add(self.stations, state)
+        missing = to_add(self.stations, state)
         energy = state.energy
         if energy is None or missing <= _MISSING * energy.capacity or energy.level <= before:
             return False
@@ -187,14 +187,7 @@ class StationService:
         return True
 
 
-def level_after_service(stations: Stations, state: RobotState) -> float:
-    """What a robot that usage empties holds when its service at its station is over."""
-    energy = state.energy
-    assert energy is not None
-    return energy.level + _to_add(stations, state)
-
-
-def _to_add(stations: Stations, state: RobotState) -> float:
+def to_add(stations: Stations, state: RobotState) -> float:
     """What a robot is still to get at its station, in the unit of usage: as planned, and what it has learnt to need."""
     energy, refill, call = state.energy, stations.refill(state.station), state.call
     if energy is None or refill is None:
@@ -205,7 +198,7 @@ def _to_add(stations: Stations, state: RobotState) -> float:
 def _takes_s(stations: Stations, state: RobotState) -> float:
     """Seconds that the service of a robot takes."""
     refill = stations.refill(state.station)
-    return 0.0 if refill is None or state.energy is None else refill.seconds(_to_add(stations, state))
+    return 0.0 if refill is None or state.energy is None else refill.seconds(to_add(stations, state))
 
 
 def _at(state: RobotState) -> tuple[str, str, float | None, float]:

@@ -98,7 +98,7 @@ class Battery(Rule):
 def energy_room(robot: Robot) -> float:
     """Return what a robot's battery holds above its reserve when it is full; inf without a battery."""
     energy = Energy.of(robot)
-    return math.inf if energy is None else energy.room
+    return math.inf if energy is None else energy.capacity - energy.least
 
 
 def energy_at_start(problem: Question, i: int) -> float:
