@@ -184,7 +184,7 @@ def test_a_robot_that_is_served_is_free_when_that_is_over_and_has_the_level_of_t
         simulation.advance(simulation.time_s + 0.5)
     simulation.advance(simulation.time_s + 5)
     (snapshot,) = simulation._executor._rest().crew
-    assert snapshot.level == pytest.approx(40)
+    assert snapshot.energy.level == pytest.approx(40)
     assert snapshot.free_s == pytest.approx(20, abs=0.5)
 
 
