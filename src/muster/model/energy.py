@@ -96,11 +96,6 @@ class EnergyLevel:
         """What the robot holds as a share of its capacity."""
         return self.level / self.capacity
 
-    @property
-    def room(self) -> float:
-        """What can be added."""
-        return max(0.0, self.capacity - self.level)
-
     def spend(self, used: float, drain: float = 1.0) -> float:
         """Lower the level by what has been used since the last time, `drain` times, and return that usage.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from muster.mission.model import Robot
 from muster.model.energy import Energy, EnergyLevel, Refill
 
-REFILL_MARGIN = 0.02
+_REFILL_MARGIN = 0.02
 """Share of the capacity that a robot is filled more than planned: no way is driven exactly as it was planned."""
 _KNOWN_AFTER = 0.02
 """Share of the capacity that a robot has to use before it is known how fast its energy drains."""
@@ -72,10 +72,11 @@ class RobotEnergy(EnergyLevel):
         ahead
             the usage planned from then to the next refill.
         """
-        if until is None or not refill.partial:
-            return self.room
-        goal = max(until * self.capacity, self.reserve + self.drain * ahead) + REFILL_MARGIN * self.capacity
-        return max(0.0, min(self.capacity, goal) - self.level)
+        goal = self.capacity
+        if until is not None and refill.partial:
+            needed = max(until * self.capacity, self.reserve + self.drain * ahead)
+            goal = min(goal, needed + _REFILL_MARGIN * self.capacity)
+        return max(0.0, goal - self.level)
 
     def hear(self, share: float | None, used: float, *, served: bool) -> None:
         """Note what telemetry tells, None: nothing; and how much the robot has used so far.
