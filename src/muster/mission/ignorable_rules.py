@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from dataclasses import MISSING, fields, replace
+from typing import TypeVar
 
 from muster.mission.errors import ParameterError
 from muster.mission.records import rules_named_by
@@ -22,6 +24,19 @@ IGNORABLE = tuple(dict.fromkeys((*_FIRST, *rules_named_by(Robot, Task, Station))
 _AS_THEY_ARE = ("suitability", "lock", "capacity", "battery")
 _PLURALS = {f"{rule}s": rule for rule in _FIRST if rule not in _AS_THEY_ARE}
 """Words of earlier files and commands, read as before; and the like of the others."""
+_KEYS: Mapping[str, tuple[str, ...]] = {
+    "prerequisite": ("lags",),
+    "window": ("window_s",),
+    "deadline": ("deadline_s",),
+    "shift": ("available_until_s", "shifts_s"),
+    "duty": ("longest_duty_s",),
+    "team": ("robots_needed", "team", "needs"),
+    "relation": ("same_robot_as", "other_robot_than", "starts_with"),
+    "load": ("load", "delivers", "load_capacity", "load_at_start"),
+    "battery": ("battery",),
+}
+"""By rule the keys of tasks and robots that are as by default where it does not hold."""
+T = TypeVar("T", "Task", "Robot")
 
 
 def ignorable_rule(word: object) -> str | None:
@@ -49,3 +64,10 @@ def ignored_rules(words: str | Collection[str]) -> tuple[str, ...]:
             )
         named.add(rule)
     return tuple(rule for rule in IGNORABLE if rule in named)
+
+
+def as_it_holds(item: T, ignored: Collection[str]) -> T:
+    """A task or robot without the rules that do not hold about times, teams, goods and energy."""
+    keys = {key for rule in ignored for key in _KEYS.get(rule, ())}
+    without = {f.name: {} if f.default is MISSING else f.default for f in fields(item) if f.name in keys}
+    return replace(item, **without) if without else item
