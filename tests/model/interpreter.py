@@ -123,30 +123,40 @@ class Routes:
         return not late and all(self._is_over_in_time(i, begins) for i, route in enumerate(self.routes) if route)
 
     def _is_over_in_time(self, i, begins):
-        last, by = self.routes[i][-1], float(self.model.over_by[i])
-        home = sum(self._way(i, a, b) for a, b in pairwise(self._places(i)[len(self.routes[i]) :]))
-        return begins[last] + self.lasts[last] + home <= by + CLOSE * (1 + abs(by)) if math.isfinite(by) else True
+        over, by = self._over(i, begins), float(self.model.over_by[i])
+        return over <= by + CLOSE * (1 + abs(by)) if math.isfinite(by) else True
+
+    def _over(self, i, begins):
+        """When the route of robot i is over, which has tasks."""
+        last, places = self.routes[i][-1], self._places(i)
+        free = begins[last] + self.lasts[last]
+        return free if len(places) == len(self.routes[i]) + 1 else self._arrives(i, free, *places[-2:])
+
+    def _arrives(self, i, free, place, to):
+        way = self._way(i, place, to)
+        return self._free_for(i, free, way) + way
+
+    def _free_for(self, i, time, seconds):
+        """From when on robot i is busy for so long without a rest; inf: never."""
+        spans = self.model.spans(i)
+        begins = (max(time, a) for a, b in spans if max(time, a) + seconds <= b + CLOSE * (1 + b))
+        return next(begins, math.inf) if spans else time
 
     def _way(self, i, place, to):
         return float(self.problem.travel_seconds(i, [place], [to])[0, 0])
 
     def begins(self):
         """The least begin of each task, seconds; None where tasks wait in a circle, or for ever."""
-        first = dict.fromkeys(self.crews, 0.0)
-        ahead, back = [], []
-        for i, route in enumerate(self.routes):
-            for k, j in enumerate(route):
-                way = self._way(i, self._places(i)[k], j)
-                if k:
-                    ahead.append((route[k - 1], j, self.lasts[route[k - 1]] + way))
-                else:
-                    first[j] = max(first[j], self.problem.robots[i].available_from_s + way)
+        ahead = [(a, b, self.lasts[a]) for route in self.routes for a, b in pairwise(route)]
+        back = []
         for j in self.crews:
             for k, least, most in self.model.gaps(j):
                 ahead.append((k, j, self.lasts[k] + least))
                 if math.isfinite(most):
                     back.append((j, k, -most - self.lasts[k]))
-        return None if self._waits_in_a_circle(ahead) else self._settled(first, [*ahead, *back])
+        if self._waits_in_a_circle(ahead):
+            return None
+        return self._settled(dict.fromkeys(self.crews, 0.0), [*ahead, *back])
 
     def _waits_in_a_circle(self, ahead):
         unit = self.model.unit
@@ -155,9 +165,22 @@ class Routes:
             left -= free
         return bool(left)
 
+    def _follow_routes(self, begins, leaves):
+        """Raise begins to when robots are there and work through, and departures to what keeps routes short enough."""
+        for i, route in enumerate(self.routes):
+            free = leaves[i]
+            for place, j in zip(self._places(i), route, strict=False):
+                begins[j] = max(begins[j], self._arrives(i, free, place, j))
+                begins[j] = self._free_for(i, begins[j], self.lasts[j])
+                free = begins[j] + self.lasts[j]
+            if route:
+                leaves[i] = max(leaves[i], self._over(i, begins) - float(self.model.lasts_most[i]))
+
     def _settled(self, begins, arcs):
+        leaves = [robot.available_from_s for robot in self.problem.robots]
         for _ in range(50 * (len(begins) + 2)):
-            before = dict(begins)
+            before, left = dict(begins), list(leaves)
+            self._follow_routes(begins, leaves)
             for a, b, seconds in arcs:
                 begins[b] = max(begins[b], begins[a] + seconds)
             for j in begins:
@@ -170,7 +193,7 @@ class Routes:
                     )
             if any(math.isinf(begin) for begin in begins.values()):
                 return None
-            if all(begins[j] <= before[j] + 1e-12 for j in begins):
+            if all(begins[j] <= before[j] + 1e-12 for j in begins) and max(map(float.__sub__, leaves, left)) <= 1e-12:
                 return begins
         return None
 
