@@ -133,6 +133,15 @@ class PlanModel:
         """For each task those that none of its robots does."""
         return [sorted(self.parts.apart.get(j, ())) for j in range(self.tasks)]
 
+    @cached_property
+    def exclusive(self) -> list[list[int]]:
+        """For each task those of which none is done if it is."""
+        return [sorted(self.parts.exclusive.get(j, ())) for j in range(self.tasks)]
+
+    def may_call(self, i: int, station: int) -> bool:
+        """Whether a robot may call at a station."""
+        return (i, station) not in self.parts.no_calls
+
     @property
     def with_relations(self) -> bool:
         """Whether tasks are tied to others by who does them, or begin together."""
