@@ -25,6 +25,7 @@ Placement::Placement(Roster& roster)
       busy_(problem_.robots(), 0) {}
 
 const UnitInsertion* Placement::best(int unit, const Trial& trial) {
+  if (roster_.barred(unit)) return nullptr;
   if (const auto whole = problem_.inseparable(unit); !whole.empty()) {
     const bool is_pair = whole.size() == 2 && alone(whole[0]) && alone(whole[1]);
     const auto task = [&](int each) { return problem_.tasks_of_unit(each).front(); };

@@ -45,6 +45,7 @@ class Placement {
   struct Walk {
     int robot, pickup, delivery, at, place;
     double time, pickup_begin, pickup_end, growth, late, takes;
+    double ride = 0.0;  // ways and work with the load on board, without waiting
   };
 
   bool alone(int unit) const;

@@ -124,6 +124,7 @@ bool Placement::pass_stop(Walk& walk, int at) const {
   if (!may_call(walk.robot)) begin = std::max(begin, timeline_.begin_of(visit.unit));
   if (!timeline_.in_time(begin, latest_begin(walk.robot, at)) || !room_for_transport(walk, at)) return false;
   walk.time = begin + timeline_.work_of(visit.place);
+  walk.ride += problem_.travel_time(walk.robot, walk.place, visit.place) + timeline_.work_of(visit.place);
   if (problem_.objective() == Objective::lateness) {
     walk.late += lateness(visit.place, walk.time) - lateness(visit.place, visit.leave);
   }
@@ -149,8 +150,7 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
   if (!timeline_.in_time(begin, second_latest_)) return;
   // A pick-up that would end too long before its delivery begins later, if it may.
   const double later = std::max(0.0, begin - walk.pickup_end - within_);
-  if (later > 0.0 && (!timeline_.in_time(walk.pickup_begin + later, latest_) || (at == walk.at && in > within_)))
-    return;
+  if (later > 0.0 && (!timeline_.in_time(walk.pickup_begin + later, latest_) || walk.ride + in > within_)) return;
   if (!timeline_.in_time(begin + work + out, latest_begin(robot, at + 1))) return;
   const bool beside = at == walk.at, empty = timeline_.tasks_in(robot) == 0;
   double growth = walk.growth + problem_.travel_usage(robot, walk.place, delivery) +
