@@ -67,6 +67,7 @@ class Placement {
   void try_transport_with(int robot, int pickup, int delivery);
   void try_pickup_at(int robot, int at, int pickup, int delivery);
   void keep_to_near_robots(int pickup, int delivery);
+  bool costs_too_much(const Walk& walk, double growth, double takes) const;
   bool room_for_transport(const Walk& walk, int at) const;
   bool pass_stop(Walk& walk, int at) const;
   void try_delivery_at(const Walk& walk, int at);

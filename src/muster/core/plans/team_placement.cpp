@@ -78,15 +78,15 @@ void Placement::try_key(int unit, int key, std::size_t first) {
 
 // All cuts between what comes before the unit and what comes after it, in order.
 void Placement::gather_cuts(int unit) {
-  const bool all = !trial_->append_only && !seek_near(unit);
-  cuts_.assign(1, {labels_.low, -1, !trial_->append_only});
+  cuts_.assign(1, {labels_.low, -1, true});
+  if (trial_->append_only) return;  // one cut behind all that may come before the unit
+  const bool all = !seek_near(unit);
   for (int other = 0; other < problem_.units(); ++other) {
     const double label = timeline_.label_of(other);
     if (!timeline_.present(other) || label <= labels_.low || label >= labels_.high) continue;
     cuts_.push_back({label, other, all || near_[other]});
   }
   std::ranges::sort(cuts_, {}, &Cut::label);
-  if (trial_->append_only) cuts_.back().tried = true;
   for (std::size_t k = 1; k < cuts_.size(); ++k) {  // there is no cut between units of one label
     if (cuts_[k - 1].label == cuts_[k].label) cuts_[k].tried |= std::exchange(cuts_[k - 1].tried, false);
   }
@@ -122,8 +122,11 @@ void Placement::stand_at_first_cut() {
   passed_.resize(candidates_.size());
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const auto& route = timeline_.route(candidates_[c]);
-    const auto later = [&](int number) { return timeline_.visit(number).label > labels_.low; };
-    at_[c] = static_cast<int>(std::find_if(route.begin() + 1, route.end() - 1, later) - route.begin()) - 1;
+    const auto before = [&](int number) {
+      const double label = timeline_.visit(number).label;
+      return trial_->append_only ? label < labels_.high : label <= labels_.low;
+    };
+    at_[c] = static_cast<int>(std::partition_point(route.begin() + 1, route.end() - 1, before) - route.begin()) - 1;
     candidate_of_[candidates_[c]] = passed_[c] = static_cast<int>(c);
   }
 }
