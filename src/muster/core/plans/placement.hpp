@@ -111,6 +111,7 @@ class Placement {
   bool seek_near(int unit);
   void stand_at_first_cut();
   void pass(int unit);
+  void pass_up_to(double label);
   bool renew_offers(int unit);
   bool offered(std::size_t candidate) const;
   void make_offers(int unit, std::size_t candidate);
@@ -173,7 +174,8 @@ class Placement {
   TeamChoice choice_;
   Rows teams_;
   std::vector<Cut> cuts_;
-  std::vector<char> near_;  // by unit, whether the cut behind it is tried where not all are
+  bool skips_cuts_ = false;  // whether some cuts alone are tried
+  std::vector<int> near_;    // units behind which they are
   std::vector<double> keys_, works_;
   std::vector<int> candidates_, at_, robots_;
   std::vector<int> candidate_of_;  // by robot; -1: it is none

@@ -43,7 +43,11 @@ template <class Try>
 void Placement::walk_cuts(int unit, Try&& attempt) {
   stand_at_first_cut();
   for (const Cut& cut : cuts_) {
-    if (cut.behind >= 0) pass(cut.behind);
+    if (skips_cuts_) {
+      pass_up_to(cut.label);
+    } else if (cut.behind >= 0) {
+      pass(cut.behind);
+    }
     if (cut.tried && renew_offers(unit) && !overlooked()) attempt();
   }
 }
@@ -76,30 +80,34 @@ void Placement::try_key(int unit, int key, std::size_t first) {
   }
 }
 
-// All cuts between what comes before the unit and what comes after it, in order.
+// The cuts between what comes before the unit and what comes after it, in order: all, or some of many.
 void Placement::gather_cuts(int unit) {
   cuts_.assign(1, {labels_.low, -1, true});
-  if (trial_->append_only) return;  // one cut behind all that may come before the unit
-  const bool all = !seek_near(unit);
-  for (int other = 0; other < problem_.units(); ++other) {
+  skips_cuts_ = trial_->append_only || seek_near(unit);
+  if (trial_->append_only) return;  // behind all that may come before the unit
+  const auto add = [&](int other) {
     const double label = timeline_.label_of(other);
-    if (!timeline_.present(other) || label <= labels_.low || label >= labels_.high) continue;
-    cuts_.push_back({label, other, all || near_[other]});
+    if (timeline_.present(other) && label > labels_.low && label < labels_.high) cuts_.push_back({label, other, true});
+  };
+  if (skips_cuts_) {
+    for (const int other : near_) add(other);
+  } else {
+    for (int other = 0; other < problem_.units(); ++other) add(other);
   }
   std::ranges::sort(cuts_, {}, &Cut::label);
   for (std::size_t k = 1; k < cuts_.size(); ++k) {  // there is no cut between units of one label
-    if (cuts_[k - 1].label == cuts_[k].label) cuts_[k].tried |= std::exchange(cuts_[k - 1].tried, false);
+    if (cuts_[k - 1].label == cuts_[k].label) cuts_[k - 1].tried = false;
   }
 }
 
-// Marks the units behind and before those near ones, and the last of each route. False: all cuts are few enough.
+// Finds the units behind and before those near ones, and the last of each route. False: all cuts are few enough.
 bool Placement::seek_near(int unit) {
   long count = 0;
   for (const int robot : candidates_) count += timeline_.tasks_in(robot);
   if (trial_->most_places == 0 || count <= 4 * trial_->most_places) return false;
-  std::ranges::fill(near_, 0);
+  near_.clear();
   const auto mark = [&](const Visit& visit) {
-    if (visit.unit >= 0) near_[visit.unit] = 1;
+    if (visit.unit >= 0) near_.push_back(visit.unit);
   };
   for (const int task : problem_.tasks_of_unit(unit)) {
     int tried = 0;
@@ -139,6 +147,15 @@ void Placement::pass(int unit) {
     if (candidate < 0) continue;
     at_[candidate] = visit.at;
     passed_.push_back(candidate);
+  }
+}
+
+// Moves the places of all robots behind everything up to a label.
+void Placement::pass_up_to(double label) {
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    const int robot = candidates_[c], before = at_[c], size = timeline_.tasks_in(robot);
+    while (at_[c] < size && timeline_.stop(robot, at_[c] + 1).label <= label) ++at_[c];
+    if (at_[c] != before) passed_.push_back(static_cast<int>(c));
   }
 }
 
