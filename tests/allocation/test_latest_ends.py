@@ -1,5 +1,6 @@
 """When tasks have to end for what waits for them, and auctions that look ahead by that."""
 
+import math
 from random import Random
 
 import pytest
@@ -29,7 +30,7 @@ def task(name, x, **more):
 def latest(*tasks, routes=((), ())):
     """The deadlines by which an auction looks ahead."""
     bound = LatestEnds(Problem.compile(mission_of(*tasks)).ready()).binding(routes)
-    return [one.deadline_s for one in bound.tasks]
+    return [None if math.isinf(end) else end for end in bound.model.ends_by]
 
 
 def test_a_task_ends_in_time_for_the_deadline_of_what_waits_for_it():
@@ -101,7 +102,7 @@ def test_no_plan_with_all_tasks_ends_one_later(seed):
     if plan.unassigned:
         return
     bound = LatestEnds(problem).binding([[] for _ in problem.robots])
-    ends = {task.id: task.deadline_s for task in bound.tasks}
+    ends = {task.id: end for task, end in zip(bound.tasks, bound.model.ends_by, strict=True)}
     for route in plan.routes:
         for stop in route.stops or ():
             assert ends[stop.name] is None or stop.end_s <= ends[stop.name] + 1e-6, stop

@@ -157,7 +157,7 @@ def _unit(problem: Problem, j: int) -> set[int]:
     unit, waiting = {j}, [j]
     while waiting:
         k = waiting.pop()
-        new = {*problem.timed_rules.beginning_with(k), *problem.with_partner(k)} - unit
+        new = {*problem.model.beginning_with(k), *problem.with_partner(k)} - unit
         unit |= new
         waiting += new
     return unit

@@ -27,7 +27,7 @@ def checked_routes(problem: Problem, returned: object, called: str) -> Routes:
     for route in returned:
         routes.append(_checked_route(route, tasks, called))
         for at, task in enumerate(routes[-1]):
-            if task in seen and (not problem.timed_rules.is_for_team(task) or task in routes[-1][:at]):
+            if task in seen and (not problem.model.is_for_team(task) or task in routes[-1][:at]):
                 name = problem.tasks[task].id
                 raise ParameterError(f"allocator {called}: returned task {name} twice; expected each at most once")
             seen.add(task)

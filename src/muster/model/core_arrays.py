@@ -1,28 +1,97 @@
-"""The rules of time, teams and relations as the arrays that the core takes; what is empty binds nothing."""
+"""The plan model as the arrays that the core takes; what is empty binds nothing."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from muster.model.rules import RULES, Question
-from muster.model.rules.rule import limits_array
+from muster.mission.model import Station
+from muster.mission.values.arrays import Floats
+from muster.model.parts import Meter
+from muster.model.plan_model import PlanModel
+from muster.model.rules import Question
 from muster.motion.leg_times import LegTimes
 
 _NONE = np.empty(0)
 
 
-def timed_arrays(problem: Question, profiles: Sequence[LegTimes]) -> dict[str, Any]:
-    """The keyword arguments of `core.Problem` that are about rules and times."""
-    of_rules = {name: array for rule in RULES for name, array in rule.core_arrays(problem).items()}
+def core_arrays(problem: Question, profiles: Sequence[LegTimes]) -> dict[str, Any]:
+    """The keyword arguments of `core.Problem` that are about times, crews, goods and energy."""
+    model = problem.model
     return {
-        **of_rules,
-        "due": limits_array(problem.timed_rules.due),
+        "openings": model.openings if model.parts.openings else [],
+        "ends_by": _limits(model.ends_by),
+        "due": _limits(model.due),
+        "over_by": _limits(model.over_by),
+        "least_stops": model.least_stops if model.parts.least_stops else np.empty(0, dtype=np.int32),
+        **_gaps(model),
+        **_crews(model, problem.kinds),
+        **_meters(model),
+        "energy": model.energy if model.parts.energy else _NONE,
+        "energy_at_start": model.energy_at_start if model.parts.energy else _NONE,
+        "stations": [_station(station) for station in problem.mission.stations],
         **_profiles(profiles),
         "makespan_includes_return": problem.mission.rules.makespan_includes_return,
     }
+
+
+def _limits(latest: Floats) -> Floats:
+    return latest if np.isfinite(latest).any() else _NONE
+
+
+def _gaps(model: PlanModel) -> dict[str, Floats]:
+    """Parallel to the tasks that others are done after, task by task."""
+    gaps = [gap[1:] for j in range(model.tasks) for gap in model.gaps(j)]
+    least, most = np.array(gaps).reshape(-1, 2).T
+    return {"gap_least": least if least.any() else _NONE, "gap_most": _limits(most)}
+
+
+def _crews(model: PlanModel, kinds: npt.NDArray[np.int32]) -> dict[str, Any]:
+    tasks, alone = range(model.tasks), len(model.units) == model.tasks
+    first_of_kind = np.unique(kinds, return_index=True)[1]
+    names = sorted({name for j in tasks for name in model.sums(j)})
+    nobody = np.zeros(model.robots)
+    able = {name: who for j in tasks for name, (_, who) in model.sums(j).items()}
+    return {
+        "unit": np.array([] if alone else model.unit, dtype=np.int32),
+        "same_crew": model.same_crew if model.parts.same_crew else [],
+        "apart": model.apart if model.parts.apart else [],
+        "parts": [
+            [(count, fits[first_of_kind].tolist()) for count, fits in model.seats(j)] if model.has_seats(j) else []
+            for j in tasks
+        ]
+        if model.with_teams
+        else [],
+        "abilities": np.array([able[name] for name in names]).T if names else _NONE,
+        "needs": np.array([[model.sums(j).get(name, (0.0, nobody))[0] for name in names] for j in tasks])
+        if names
+        else _NONE,
+    }
+
+
+def _meters(model: PlanModel) -> dict[str, Any]:
+    def columns(of: Callable[[Meter], Floats]) -> Floats:
+        """Return (tasks or robots, meters)."""
+        return np.array([of(meter) for meter in model.meters]).T if model.meters else _NONE
+
+    delivers = bool(model.parts.taken_on_by)
+    return {
+        "meters": len(model.meters),
+        "load": columns(lambda meter: meter.change),
+        "pending": columns(lambda meter: meter.pending),
+        "pickup": np.array(model.pickups if delivers and model.meters else [], dtype=np.int32),
+        "most_aboard": columns(lambda meter: meter.most),
+        "load_at_start": columns(lambda meter: meter.at_start),
+        "pending_at_start": columns(lambda meter: meter.pending_at_start),
+    }
+
+
+def _station(station: Station) -> tuple[float, float, bool, bool, int]:
+    swap_s = station.swap_s if station.swaps else -1.0
+    return station.charge_per_s or 0.0, swap_s, station.unloads, station.partial, station.slots
 
 
 def _profiles(profiles: Sequence[LegTimes]) -> dict[str, Any]:

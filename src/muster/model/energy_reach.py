@@ -14,7 +14,6 @@ import numpy.typing as npt
 
 from muster.mission.model import Station
 from muster.model.rules.battery import energy_at_start, energy_room
-from muster.model.rules.load import pickups
 from muster.model.rules.rule import Bools, Floats, Question
 
 _ROUNDING = 1e-9
@@ -44,7 +43,7 @@ def energy_reaches(problem: Travelled) -> Bools:
     hubs = 2 + len(problem.stations) + len(problem.shortcuts())
     if hubs * hubs * len(problem.tasks) > _MOST_WAYS:
         return reaches
-    pickup = pickups(problem)
+    pickup = problem.model.pickups
     delivery = {k: j for j, k in enumerate(pickup) if k >= 0}
     for i, robot in enumerate(problem.robots):
         if robot.battery is None:

@@ -1,4 +1,8 @@
-"""The rules of time, teams and relations that hold in a problem, by task and robot."""
+"""The model of a plan: the primitives that the rules of a mission come to, by task and robot.
+
+A rule contributes what it means (`Rule.compile`); whoever plans, proves, explains or carries out reads it here, and
+knows no rule. Units are sets of tasks that begin at one moment.
+"""
 
 from __future__ import annotations
 
@@ -6,80 +10,106 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
-from muster.mission.model import Robot, Task
-from muster.mission.task_relations import tied_by
-from muster.mission.values.arrays import Bools, Floats
+from muster.mission.values.arrays import Bools, Floats, Indices
+from muster.model.parts import Gap, Meter, Openings, Parts, Seats
 
 ROUNDING = 2e-9
 """By how much a time may be above a limit, relative; a little more than the judge allows."""
 
-Openings = list[tuple[float, float]]
-
-
-class Question(Protocol):
-    """What the rules are read from: a `Problem`."""
-
-    @property
-    def robots(self) -> tuple[Robot, ...]: ...
-    @property
-    def tasks(self) -> tuple[Task, ...]: ...
-    @property
-    def prerequisites(self) -> list[list[int]]: ...
-    @property
-    def task_index(self) -> dict[str, int]: ...
-
-    def holds(self, rule: str) -> bool: ...
-
 
 @dataclass(frozen=True, eq=False)
-class TimedRules:
-    """What the mission says of time and teams, as far as it is not ignored."""
+class PlanModel:
+    """What every plan must hold.
 
-    problem: Question
+    Parameters
+    ----------
+    parts
+        what the rules have contributed.
+    due
+        (n,) when a task should have ended: of the objective `lateness`, binding nothing; inf: never late.
+    """
+
+    parts: Parts
+    due: Floats
+
+    @property
+    def tasks(self) -> int:
+        return self.parts.tasks
+
+    @property
+    def robots(self) -> int:
+        return self.parts.robots
 
     @cached_property
     def openings(self) -> list[Openings]:
-        """For each task when work on it may begin; empty: at any time."""
-        if not self.problem.holds("window"):
-            return [[] for _ in self.problem.tasks]
-        return [[(a, math.inf if b is None else b) for a, b in task.window_s] for task in self.problem.tasks]
+        """For each task when it may begin; empty: at any time."""
+        return [self.parts.openings.get(j, []) for j in range(self.tasks)]
 
     @cached_property
     def ends_by(self) -> Floats:
-        """(n,) inf: none."""
-        holds = self.problem.holds("deadline")
-        return np.array([_limit(task.deadline_s if holds else None) for task in self.problem.tasks])
-
-    @cached_property
-    def due(self) -> Floats:
-        """(n,) inf: never late."""
-        return np.array([_limit(task.due_s) for task in self.problem.tasks])
+        """(n,) when a task has ended at the latest; inf: whenever."""
+        return _filled(self.parts.ends_by, self.tasks, math.inf)
 
     @cached_property
     def over_by(self) -> Floats:
-        """(m,) inf: always."""
-        holds = self.problem.holds("shift")
-        return np.array([_limit(robot.available_until_s if holds else None) for robot in self.problem.robots])
+        """(m,) when a robot's route is over at the latest; inf: whenever."""
+        return _filled(self.parts.over_by, self.robots, math.inf)
 
-    def gaps(self, j: int) -> list[tuple[int, float, float]]:
-        """The prerequisites of a task; how long after the end of each work begins, at least and at most."""
-        task, found = self.problem.tasks[j], []
-        for k in self.problem.prerequisites[j]:
-            lag = task.lags.get(self.problem.tasks[k].id)
-            found.append((k, 0.0, math.inf) if lag is None else (k, lag.after_s, _limit(lag.within_s)))
+    @cached_property
+    def capacity(self) -> Floats:
+        """(m,) the most usage of a robot; inf: without an end."""
+        return _filled(self.parts.capacity, self.robots, math.inf)
+
+    @cached_property
+    def least_stops(self) -> Indices:
+        """(m,) how many tasks a robot does at least that does any."""
+        return _filled(self.parts.least_stops, self.robots, 0).astype(np.int32)
+
+    @property
+    def meters(self) -> Sequence[Meter]:
+        """What robots have on board."""
+        return self.parts.meters
+
+    @cached_property
+    def energy(self) -> Floats:
+        """(m,) for how much usage a robot's energy is enough at most; inf: for any."""
+        return _filled({i: room for i, (room, _) in self.parts.energy.items()}, self.robots, math.inf)
+
+    @cached_property
+    def energy_at_start(self) -> Floats:
+        """(m,) the same at first."""
+        return _filled({i: first for i, (_, first) in self.parts.energy.items()}, self.robots, math.inf)
+
+    @cached_property
+    def pickups(self) -> list[int]:
+        """For each task the one that takes on board what it delivers; -1: it delivers nothing."""
+        return [self.parts.taken_on_by.get(j, -1) for j in range(self.tasks)]
+
+    @cached_property
+    def partners(self) -> list[int | None]:
+        """For each task the one that it delivers for, or that delivers for it."""
+        found: list[int | None] = [None] * self.tasks
+        for j, pickup in self.parts.taken_on_by.items():
+            found[j], found[pickup] = pickup, j
         return found
+
+    def gaps(self, j: int) -> list[Gap]:
+        """The tasks that are done before a task; how long after the end of each it begins, at least and at most."""
+        return [(k, *self.parts.gaps[j][k]) for k in sorted(self.parts.gaps.get(j, ()))]
+
+    @cached_property
+    def awaited(self) -> list[list[int]]:
+        """For each task those that are done before it."""
+        return [sorted(self.parts.gaps.get(j, ())) for j in range(self.tasks)]
 
     @cached_property
     def units(self) -> list[list[int]]:
         """The tasks in sets that begin together."""
         members: dict[int, list[int]] = {}
-        tasks = self.problem.tasks
-        tied = tied_by("starts_with", tasks) if self.problem.holds("relation") else range(len(tasks))
-        for j, first in enumerate(tied):
+        for j, first in enumerate(_joined(self.parts.together, self.tasks)):
             members.setdefault(first, []).append(j)
         return list(members.values())
 
@@ -87,7 +117,7 @@ class TimedRules:
     def unit(self) -> list[int]:
         """For each task the index of its unit."""
         index = {j: u for u, members in enumerate(self.units) for j in members}
-        return [index[j] for j in range(len(self.problem.tasks))]
+        return [index[j] for j in range(self.tasks)]
 
     def beginning_with(self, j: int) -> list[int]:
         """The other tasks of its unit."""
@@ -96,84 +126,51 @@ class TimedRules:
     @cached_property
     def same_crew(self) -> list[list[int]]:
         """For each task those that the same robots do."""
-        return self._both_ways([self._related(task.same_robot_as) for task in self.problem.tasks])
+        return [sorted(self.parts.same_crew.get(j, ())) for j in range(self.tasks)]
 
     @cached_property
     def apart(self) -> list[list[int]]:
         """For each task those that none of its robots does."""
-        return self._both_ways([self._related(task.other_robot_than) for task in self.problem.tasks])
+        return [sorted(self.parts.apart.get(j, ())) for j in range(self.tasks)]
 
-    @staticmethod
-    def _both_ways(named: list[list[int]]) -> list[list[int]]:
-        if not any(named):
-            return named
-        both: list[set[int]] = [set(others) for others in named]
-        for j, others in enumerate(named):
-            for k in others:
-                both[k].add(j)
-        return [sorted(others) for others in both]
+    @property
+    def with_relations(self) -> bool:
+        """Whether tasks are tied to others by who does them, or begin together."""
+        return bool(self.parts.same_crew or self.parts.apart or self.parts.together)
 
-    def _related(self, names: Sequence[str]) -> list[int]:
-        """The named tasks that are in the problem: of a part of a mission not all are, and then nothing is tied."""
-        if not names or not self.problem.holds("relation"):
-            return []
-        index = self.problem.task_index
-        return [index[name] for name in names if name in index]
-
-    @cached_property
+    @property
     def with_teams(self) -> bool:
-        """Whether a team may have to do a task."""
-        return bool(self.for_teams)
+        """Whether several robots may have to do a task."""
+        return bool(self.parts.seats or self.parts.sums)
 
     @cached_property
     def for_teams(self) -> tuple[int, ...]:
-        """The tasks that more than one robot may have to do."""
-        return tuple(filter(self.is_for_team, range(len(self.problem.tasks))))
-
-    @cached_property
-    def with_relations(self) -> bool:
-        """Whether tasks are tied to others by who does them, or begin together."""
-        tied = any(map(any, (self.same_crew, self.apart)))
-        return tied or len(self.units) < len(self.problem.tasks)
+        """The tasks that several robots may have to do."""
+        return tuple(sorted({*self.parts.seats, *self.parts.sums}))
 
     def is_for_team(self, j: int) -> bool:
-        """Whether more than one robot may have to do a task."""
-        return self.problem.holds("team") and self.problem.tasks[j].is_for_team
+        """Whether several robots may have to do a task."""
+        return j in self.parts.seats or j in self.parts.sums
 
-    def needed(self, j: int) -> Mapping[str, float]:
-        """What the abilities of the robots that do a task must sum to; none: nothing."""
-        return (self.problem.tasks[j].needs or {}) if self.problem.holds("team") else {}
-
-    def has_parts(self, j: int) -> bool:
+    def has_seats(self, j: int) -> bool:
         """Whether the robots that do a task are so many of each sort, more than one in all."""
-        return self.is_for_team(j) and not self.needed(j)
+        return j in self.parts.seats
 
-    def needs(self, j: int) -> list[tuple[float, Floats]]:
-        """What the abilities of a team must sum to, with those of each robot."""
-        needs = self.problem.tasks[j].needs if self.problem.holds("team") else None
-        robots = self.problem.robots
-        return [(value, np.array([ability(robot, name) for robot in robots])) for name, value in (needs or {}).items()]
+    def seats(self, j: int) -> Seats:
+        """How many robots of each sort do a task, and (m,) who is of it; one of any sort, where nothing is said."""
+        return self.parts.seats.get(j) or [(1, np.ones(self.robots, np.bool_))]
 
-    def parts(self, j: int) -> list[tuple[int, Bools]]:
-        """The parts of a team: how many robots, and which may be among them."""
-        task = self.problem.tasks[j]
-        if not self.is_for_team(j) or not task.team:
-            return [
-                (
-                    (task.robots_needed if self.is_for_team(j) else None) or 1,
-                    np.ones(len(self.problem.robots), np.bool_),
-                )
-            ]
-        skills = self.problem.holds("skill")
-        return [(p.count, np.array([p.fits(r, skills=skills) for r in self.problem.robots])) for p in task.team]
+    def sums(self, j: int) -> Mapping[str, tuple[float, Floats]]:
+        """By name what the robots that do a task must be able to do at least, together, and (m,) what each is."""
+        return self.parts.sums.get(j, {})
 
     def places(self, u: int) -> tuple[list[int], Bools]:
-        """The places of the teams of a unit, of `needs` one: the task of each, and (places, m) which robots fit."""
-        rows = [(j, fits) for j in self.units[u] for count, fits in self.parts(j) for _ in range(count)]
+        """The places of the crews of a unit, where sums count one: the task of each, and (places, m) who fits."""
+        rows = [(j, fits) for j in self.units[u] for count, fits in self.seats(j) for _ in range(count)]
         return [j for j, _ in rows], np.array([fits for _, fits in rows], dtype=np.bool_)
 
     def next_begin(self, j: int, times: Floats) -> Floats:
-        """When work on a task may begin that is ready at some times; inf: not any more."""
+        """When a task may begin that is ready at some times; inf: not any more."""
         if not self.openings[j]:
             return times
         opens, closes = np.array(self.openings[j]).T
@@ -181,35 +178,48 @@ class TimedRules:
         return np.asarray(np.maximum(times, np.append(opens, math.inf)[at]))
 
     def in_team(self, i: int) -> object:
-        """What makes robot i the same as another in every team."""
-        if not self.for_teams:
+        """What makes robot i the same as another in every crew."""
+        if not self.with_teams:
             return None
-        seats = tuple(bool(fits[i]) for j in self.for_teams for _, fits in self.parts(j))
-        return seats, tuple(sorted((self.problem.robots[i].abilities or {}).items()))
+        seats = tuple(bool(fits[i]) for j in sorted(self.parts.seats) for _, fits in self.parts.seats[j])
+        able = {name: float(who[i]) for sums in self.parts.sums.values() for name, (_, who) in sums.items()}
+        return seats, tuple(sorted(able.items()))
 
     def sizes_differ(self, j: int, k: int) -> bool:
-        """Whether no team is of the right size for both of two tasks."""
+        """Whether no crew is of the right size for both of two tasks."""
         fewest = self.least_members(j), self.least_members(k)
         return fewest[0] != fewest[1] and not any(
-            self.needed(few) for few, least in zip((j, k), fewest, strict=True) if least < max(fewest)
+            self.sums(few) for few, least in zip((j, k), fewest, strict=True) if least < max(fewest)
         )
 
     def least_members(self, j: int) -> int:
         """How many robots a task needs at least."""
-        if not self.is_for_team(j):
-            return 1
-        if self.problem.tasks[j].needs:
-            return max((_fewest(least, able) for least, able in self.needs(j)), default=1)
-        return sum(count for count, _ in self.parts(j))
+        if j in self.parts.sums:
+            return max(_fewest(least, able) for least, able in self.parts.sums[j].values())
+        return sum(count for count, _ in self.seats(j))
 
 
-def _limit(value: float | None) -> float:
-    return math.inf if value is None else value
+def _filled(known: Mapping[int, float], size: int, otherwise: float) -> Floats:
+    values = np.full(size, otherwise, dtype=np.float64)
+    for k, value in known.items():
+        values[k] = value
+    return values
 
 
-def ability(robot: Robot, name: str) -> float:
-    """How much of an ability a robot has."""
-    return float((robot.abilities or {}).get(name, 0.0))
+def _joined(pairs: Sequence[tuple[int, int]], size: int) -> list[int]:
+    """For each of so many things the first one that pairs join it to, directly or through others; else itself."""
+    first = list(range(size))
+
+    def found(k: int) -> int:
+        while first[k] != k:
+            first[k] = first[first[k]]
+            k = first[k]
+        return k
+
+    for j, k in pairs:
+        a, b = sorted((found(j), found(k)))
+        first[b] = a
+    return [found(k) for k in range(size)]
 
 
 def _fewest(least: float, able: Floats) -> int:

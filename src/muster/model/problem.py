@@ -21,11 +21,11 @@ from muster.mission.supported_features import require_supported
 from muster.mission.system.garbage import collector_paused
 from muster.mission.value_types import shown
 from muster.model.charges import Charge, Drains
-from muster.model.core_arrays import timed_arrays
+from muster.model.core_arrays import core_arrays
 from muster.model.lengths import Measured
-from muster.model.plan_model import TimedRules
+from muster.model.parts import Parts
+from muster.model.plan_model import PlanModel
 from muster.model.rules import RULES, Rule
-from muster.model.rules.load import pickups
 from muster.model.subproblem import cut_down
 from muster.model.task_geometry import TaskGeometry
 from muster.model.travel import require_room, straight_table, travel_table
@@ -83,6 +83,8 @@ class Problem:
     levels: tuple[float, ...] = ()  # what each battery holds at first, measured; inf: no battery; empty: as the mission
     mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
     waiting: Waiting = NO_WAITING  # that is expected on ways
+    freed: frozenset[tuple[str, int]] = frozenset()  # words of rules, and the robots or tasks that they do not bind
+    sooner: tuple[float, ...] = ()  # for each task when it must have ended, beside what rules say; empty: none
 
     @classmethod
     def compile(cls, mission: Mission, objective: str | None = None, ignored: str | Collection[str] = ()) -> Problem:
@@ -116,6 +118,7 @@ class Problem:
         number_in = {j: k for k, j in enumerate(tasks)}
         fixed = tuple(tuple(number_in[j] for j in self.fixed[i]) for i in robots) if self.fixed else ()
         charges = tuple(self.charges[i] for i in robots) if self.charges else ()
+        assert not self.freed, "a problem of which rules were freed is looked at as a whole"
         n, m = len(self.tasks), len(self.robots)
         stations = range(n + 2 * m, n + 2 * m + len(self.stations))
         places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots), *stations]
@@ -133,6 +136,7 @@ class Problem:
             levels=tuple(self.levels[i] for i in robots) if self.levels else (),
             known=known,
             waiting=self.waiting.part(robots, places),
+            sooner=tuple(self.sooner[j] for j in tasks) if self.sooner else (),
         )
 
     def __getstate__(self) -> dict[str, Any]:
@@ -166,29 +170,38 @@ class Problem:
         return {robot.id: i for i, robot in enumerate(self.robots)}
 
     @cached_property
+    def model(self) -> PlanModel:
+        """What the rules in force come to."""
+        parts = Parts(len(self.robots), len(self.tasks))
+        for rule in self.rules:
+            parts.free = {number for word, number in self.freed if word == rule.word}
+            rule.compile(self, parts)
+        parts.free = set()
+        for j, latest_s in enumerate(self.sooner):
+            parts.ends(j, latest_s)
+        due = np.array([math.inf if task.due_s is None else task.due_s for task in self.tasks])
+        return PlanModel(parts, due)
+
+    @property
     def capacity(self) -> Floats:
-        """(m,) usable work capacity; inf where unlimited."""
-        usable = 1.0 - self.mission.rules.capacity_reserve
-        limited = self.holds("capacity")
-        return np.array(
-            [usable * r.work_capacity if limited and r.work_capacity is not None else math.inf for r in self.robots]
-        )
+        """(m,) the most usage of a robot; inf where unlimited."""
+        return self.model.capacity
+
+    @property
+    def awaited(self) -> list[list[int]]:
+        """For each task those that are done before it."""
+        return self.model.awaited
 
     @cached_property
     def prerequisites(self) -> list[list[int]]:
-        """For each task the indices of its prerequisites."""
-        if not self.holds("prerequisite"):
-            return [[] for _ in self.tasks]
-        return [sorted(self.task_index[name] for name in task.prerequisites) for task in self.tasks]
+        """The same without the task whose load it delivers."""
+        found = zip(self.awaited, self.model.pickups, strict=True)
+        return [[k for k in before if k != pickup] for before, pickup in found]
 
-    @cached_property
+    @property
     def partners(self) -> list[int | None]:
         """For each task the other one of its transport: which takes on what it delivers, or delivers its load."""
-        found: list[int | None] = [None] * len(self.tasks)
-        for j, pickup in enumerate(pickups(self)):
-            if pickup >= 0:
-                found[j], found[pickup] = pickup, j
-        return found
+        return self.model.partners
 
     def with_partner(self, j: int) -> tuple[int, ...]:
         """A task, with all that can only be done together with it where transports are among them, in order.
@@ -210,26 +223,15 @@ class Problem:
 
     def closed(self, tasks: Iterable[int]) -> list[int]:
         """Tasks with all that must come before them, begin with them or deliver their goods, in order."""
-        needed, rules = set(tasks), self.timed_rules
+        needed, model = set(tasks), self.model
         waiting = list(needed)
         while waiting:
             j = waiting.pop()
             partner = self.partners[j]
-            new = {*self.prerequisites[j], *rules.beginning_with(j), *([] if partner is None else [partner])} - needed
+            new = {*self.prerequisites[j], *model.beginning_with(j), *([] if partner is None else [partner])} - needed
             needed |= new
             waiting += new
         return sorted(needed)
-
-    @cached_property
-    def awaited(self) -> list[list[int]]:
-        """For each task those that must be done before it: its prerequisites, and the one whose load it delivers."""
-        found = zip(self.prerequisites, pickups(self), strict=True)
-        return [sorted({*before, pickup} - {-1}) for before, pickup in found]
-
-    @cached_property
-    def timed_rules(self) -> TimedRules:
-        """The rules of time, teams and relations that hold."""
-        return TimedRules(self)
 
     @cached_property
     def asked(self) -> Mapping[str, str]:
@@ -370,7 +372,7 @@ class Problem:
             place_class=self._task_geometry.classes,
             table=measured.table,
             travel_class=measured.classes,
-            **timed_arrays(self, self.leg_times),
+            **core_arrays(self, self.leg_times),
             waiting=self.waiting.seconds,
             waits=self.waiting.robots,
         )

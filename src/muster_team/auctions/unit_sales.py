@@ -80,19 +80,19 @@ class UnitSales:
         return awards_of(self._problem, self._won(number, sold, members))
 
     def _for_sale(self) -> list[int]:
-        units = self._problem.timed_rules.units
+        units = self._problem.model.units
         return [unit for unit in self._auction.ready() if not any(task in self._closed for task in units[unit])]
 
     def _names(self, unit: int) -> list[str]:
-        return [self._problem.tasks[task].id for task in self._problem.timed_rules.units[unit]]
+        return [self._problem.tasks[task].id for task in self._problem.model.units[unit]]
 
     def _unit(self, sold: Sold) -> int:
-        return self._problem.timed_rules.unit[self._problem.task_index[sold.task]]
+        return self._problem.model.unit[self._problem.task_index[sold.task]]
 
     def _places(self, robot: int, units: Sequence[int]) -> Iterator[Bid]:
         """The tasks of units for several robots that a robot may do, with its usage so far."""
         for unit in units:
-            for task in self._problem.timed_rules.units[unit]:
+            for task in self._problem.model.units[unit]:
                 if self._problem.may(robot, task):
                     yield self._problem.tasks[task].id, self._auction.usage(robot)
 

@@ -33,6 +33,6 @@ def inserted(problem: Problem, routes: Routes) -> Routes:
 
 def _urgency(problem: Problem, unit: int) -> tuple[float, float]:
     """What comes first is less: the greatest priority of a unit's tasks, then their earliest deadline."""
-    tasks = [problem.tasks[j] for j in problem.timed_rules.units[unit]]
+    tasks = [problem.tasks[j] for j in problem.model.units[unit]]
     deadlines = (math.inf if task.deadline_s is None else task.deadline_s for task in tasks)
     return -max(task.priority for task in tasks), min(deadlines)

@@ -58,7 +58,7 @@ class UnitPopulation:
         teams: dict[int, set[int]] = {}
         for robot, stops in enumerate(roster.core.stops):
             for at, (task, _, begin, _) in enumerate(stops):
-                unit = self._problem.timed_rules.unit[task]
+                unit = self._problem.model.unit[task]
                 begins[unit] = max(begins.get(unit, (begin, at)), (begin, at))
                 teams.setdefault(unit, set()).add(robot)
         order = sorted(self._units, key=lambda unit: begins.get(unit, (float("inf"), unit)))
@@ -115,7 +115,7 @@ class UnitPopulation:
 
     def _able(self, unit: int) -> list[int]:
         """The robots that may do a unit, where one alone does it."""
-        rules = self._problem.timed_rules
+        rules = self._problem.model
         task, *more = rules.units[unit]
         if more or rules.is_for_team(task):
             return []

@@ -28,7 +28,6 @@ from muster.mission.auction_book import Award, Bid, Book, TakeBid
 from muster.mission.errors import ParameterError
 from muster.mission.plan import tie_order
 from muster.model.problem import Problem
-from muster.model.rules.load import pickups
 from muster.model.skill_quality import skill_quality
 
 
@@ -100,8 +99,8 @@ class CoalitionAuction:
         self._problem = problem if bid == problem.objective else replace(problem, objective=bid)
         self._terms = terms
         self._latest_ends = LatestEnds(self._problem)
-        unit = problem.timed_rules.unit
-        self._deliver = {unit[j] for j, pickup in enumerate(pickups(problem)) if pickup >= 0}
+        unit = problem.model.unit
+        self._deliver = {unit[j] for j, pickup in enumerate(problem.model.pickups) if pickup >= 0}
         self._go_on_from(start)
         self._quality = skill_quality(problem) if terms.quality_weight else np.empty((0, 0))
         self.sales: list[CoalitionSale] = []
@@ -212,13 +211,13 @@ class CoalitionAuction:
 
     def is_alone(self, unit: int) -> bool:
         """Whether a unit is one task for one robot, and so is what can only be done together with it."""
-        rules = self._problem.timed_rules
+        rules = self._problem.model
         whole = [k for j in rules.units[unit] for k in self._problem.with_partner(j)]
         alone = all(len(rules.units[rules.unit[k]]) == 1 and not rules.is_for_team(k) for k in whole)
         return alone and len(whole) <= 2
 
     def _of_robots(self, unit: int, robots: Sequence[int]) -> Iterator[CoalitionBid]:
-        (task,) = self._problem.timed_rules.units[unit]
+        (task,) = self._problem.model.units[unit]
         for robot in robots:
             if self._problem.may(robot, task) and (found := self.best_bid(unit, [robot])) is not None:
                 yield found

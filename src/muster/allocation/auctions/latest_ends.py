@@ -1,7 +1,7 @@
 """The latest ends of tasks by what waits for them: an auction that sells one by one looks ahead by these.
 
-Backward pass of the critical-path method [kelley1959] through windows, deadlines and lags: a task has to end so early
-that all that waits for it can still be in time, as far as anybody may do that.
+Backward pass of the critical-path method [kelley1959] through openings, latest ends and gaps: a task has to end so
+early that all that waits for it can still be in time, as far as anybody may do that.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from graphlib import TopologicalSorter
 import numpy as np
 
 from muster import core
-from muster.model.plan_model import TimedRules
+from muster.model.plan_model import PlanModel
 from muster.model.problem import Floats, Problem
 
 _TIE = 1e-12
@@ -22,45 +22,41 @@ _TIE = 1e-12
 
 
 class LatestEnds:
-    """The latest ends of a problem's tasks, and the problem that has them as deadlines."""
+    """The latest ends of a problem's tasks, and the problem that is bound by them."""
 
     def __init__(self, problem: Problem) -> None:
-        self._problem, rules = problem, problem.timed_rules
+        self._problem, rules = problem, problem.model
         self._own = rules.ends_by
         self._ends = _latest_ends(problem, rules)
         self._bound: dict[frozenset[int], Problem] = {}
 
     @property
     def any(self) -> bool:
-        """Whether a task has to end sooner than its own deadline says."""
+        """Whether a task has to end sooner than the model says."""
         return bool((self._ends < self._own).any())
 
     def binding(self, routes: Sequence[Sequence[int]]) -> Problem:
-        """The problem with these ends as deadlines, where routes that have a schedule keep them."""
+        """The problem with these ends, where routes that have a schedule keep them."""
         stops = core.Inspection(self._problem.core, [list(route) for route in routes]).stops or []
         late = frozenset(
             task for route in stops for task, _, begin, end in route if self._is_late(task, begin, end - begin)
         )
         if late not in self._bound:
-            self._bound = {late: self._with_deadlines(late)}
+            self._bound = {late: self._with_ends(late)}
         return self._bound[late]
 
     def _is_late(self, task: int, begin: float, lasts: float) -> bool:
         latest = float(self._ends[task]) - lasts
         return begin > latest + _TIE * max(1.0, latest)
 
-    def _with_deadlines(self, late: frozenset[int]) -> Problem:
-        ends = [
+    def _with_ends(self, late: frozenset[int]) -> Problem:
+        ends = (
             float(own if j in late else end) for j, (own, end) in enumerate(zip(self._own, self._ends, strict=True))
-        ]
-        tasks = tuple(
-            replace(task, deadline_s=end if math.isfinite(end) else None)
-            for task, end in zip(self._problem.tasks, ends, strict=True)
         )
-        return replace(self._problem, tasks=tasks, known=self._problem.measured)
+        return replace(self._problem, sooner=tuple(ends), known=self._problem.measured)
 
 
-def _latest_ends(problem: Problem, rules: TimedRules) -> Floats:
+def _latest_ends(problem: Problem, rules: PlanModel) -> Floats:
     """(n,) seconds; inf: nothing binds a task."""
     work = np.array([problem.work_seconds(i) for i in range(len(problem.robots))])
     shortest = np.where(problem.allowed, work, math.inf).min(axis=0, initial=math.inf)
@@ -82,9 +78,8 @@ def _latest_ends(problem: Problem, rules: TimedRules) -> Floats:
     return ends
 
 
-def _last_begin(rules: TimedRules, j: int, latest: float) -> float:
+def _last_begin(model: PlanModel, j: int, latest: float) -> float:
     """The last time up to `latest` at which work on a task may begin; -inf: none is."""
-    windows = rules.openings[j]
-    return max(
-        (min(latest, closes) for opens, closes in windows if opens <= latest), default=-math.inf if windows else latest
-    )
+    spans = model.openings[j]
+    begins = (min(latest, closes) for opens, closes in spans if opens <= latest)
+    return max(begins, default=-math.inf if spans else latest)

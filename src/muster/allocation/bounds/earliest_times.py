@@ -52,7 +52,7 @@ class _Bounding:
     """Lower bounds of begins, raised one by the other until none is raised, or one can never be kept."""
 
     def __init__(self, problem: Problem, usable: Bools) -> None:
-        self._rules, tasks = problem.timed_rules, range(len(problem.tasks))
+        self._rules, tasks = problem.model, range(len(problem.tasks))
         self._tasks = tasks
         timed = in_time(problem)
         self._work = np.where(usable, [timed.work_usage(i) for i in range(len(problem.robots))], math.inf)

@@ -34,7 +34,7 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
 
     def lost_before(j: int) -> str:
         """The first lost task that must be done before it, or begins with it."""
-        named = (*problem.prerequisites[j], *problem.timed_rules.beginning_with(j))
+        named = (*problem.prerequisites[j], *problem.model.beginning_with(j))
         return next((problem.tasks[k].id for k in named if k in lost), "")
 
     def reasons(j: int) -> tuple[Reason, ...]:
@@ -60,7 +60,7 @@ def _lost_tasks(problem: Problem, limits: Limits) -> dict[int, str]:
     waiting = list(lost)
     while waiting:
         before = waiting.pop()
-        for j in (*problem.dependants[before], *problem.timed_rules.beginning_with(before)):
+        for j in (*problem.dependants[before], *problem.model.beginning_with(before)):
             if j not in lost:
                 lost[j] = problem.tasks[before].id
                 waiting.append(j)

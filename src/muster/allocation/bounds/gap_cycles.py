@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from muster.model.plan_model import ROUNDING, TimedRules
+from muster.model.plan_model import ROUNDING, PlanModel
 from muster.model.problem import Floats, Problem
 from muster.model.rules.times import span, spans
 
@@ -19,7 +19,7 @@ class Works(Protocol):
     @property
     def problem(self) -> Problem: ...
     @property
-    def rules(self) -> TimedRules: ...
+    def rules(self) -> PlanModel: ...
     @property
     def shortest_work(self) -> Floats: ...
     @property

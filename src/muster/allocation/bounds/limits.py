@@ -6,14 +6,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from muster.allocation.bounds.gap_cycles import lag_cycle
 from muster.model.bottleneck import bottleneck
-from muster.model.plan_model import ROUNDING, TimedRules
+from muster.model.plan_model import ROUNDING, PlanModel
 from muster.model.problem import Bools, Floats, Problem
 from muster.model.rules.deadline import too_late
 from muster.model.rules.times import spans
@@ -56,8 +55,8 @@ class Limits:
     steps: tuple[Limits, ...] = ()
 
     @property
-    def rules(self) -> TimedRules:
-        return self.problem.timed_rules
+    def rules(self) -> PlanModel:
+        return self.problem.model
 
     @property
     def is_timed(self) -> bool:
@@ -142,30 +141,17 @@ class Limits:
         left = [step.usable for step in (*self.steps[1:], self)]
         return np.asarray(np.sum(left, axis=0), dtype=np.int_)
 
-    def without_shift(self, i: int) -> Limits | None:
-        """Bounds that hold whatever the shift of a robot; None: to narrow them would take too long."""
-        return self._without("available_until_s", i)
+    def without(self, word: str, at: int) -> Limits | None:
+        """Bounds that hold whatever a rule says of one robot or task: by it other pairs may have been excluded.
 
-    def without_deadline(self, j: int) -> Limits | None:
-        """The same whatever the deadline of a task."""
-        return self._without("deadline_s", j)
-
-    def without_windows(self, j: int) -> Limits | None:
-        """The same whatever the windows of a task."""
-        return self._without("window_s", j)
-
-    def _without(self, key: str, at: int) -> Limits | None:
-        """Bounds that hold whatever a key says of one robot or task: by it other pairs may have been excluded."""
+        None: to narrow them would take too long.
+        """
         if not self.steps:
             return self  # no pair was excluded before
-        whose = "robots" if key == "available_until_s" else "tasks"
-        all_of_them: list[Any] = list(getattr(self.problem, whose))
-        if (key, at) not in self._freed and self.usable.size * len(all_of_them) <= _MOST_NARROWED:
-            all_of_them[at] = replace(all_of_them[at], **{key: () if key == "window_s" else None})
-            changes: dict[str, Any] = {whose: tuple(all_of_them), "known": self.problem.measured}
-            freed = _unnarrowed(replace(self.problem, **changes), self.usage, self.arrival, self.home)
-            self._freed[key, at] = _narrowed(freed)
-        return self._freed.get((key, at))
+        if (word, at) not in self._freed and self.usable.size * max(self.usable.shape) <= _MOST_NARROWED:
+            free = replace(self.problem, freed=frozenset({(word, at)}), known=self.problem.measured)
+            self._freed[word, at] = _narrowed(_unnarrowed(free, self.usage, self.arrival, self.home))
+        return self._freed.get((word, at))
 
     @cached_property
     def _freed(self) -> dict[tuple[str, int], Limits]:
@@ -243,7 +229,7 @@ class _Times:
     begin: Floats
     awaited: list[int | None]
 
-    def wait(self, rules: TimedRules, j: int, time: float, why: int | None) -> bool:
+    def wait(self, rules: PlanModel, j: int, time: float, why: int | None) -> bool:
         """Let a task, and all that begins with it, wait until a time; returns whether that is later."""
         if time <= self.ready[j] * (1 + ROUNDING) + ROUNDING:
             return False
@@ -323,7 +309,7 @@ def _late(limits: Limits, times: _Times, k: int) -> str:
     return f"{problem.tasks[k].id} may end only so long before what follows: it {late}" if late else ""
 
 
-def _begin(rules: TimedRules, u: int, ready: Floats) -> float:
+def _begin(rules: PlanModel, u: int, ready: Floats) -> float:
     """When all tasks of a unit may begin at once."""
     time, before = float(max(ready[j] for j in rules.units[u])), -math.inf
     while before < time < math.inf:
@@ -345,23 +331,23 @@ def _way(limits: Limits, k: int, j: int, usable: Bools) -> float:
     return min((float(limits.problem.travel_seconds(i, [k], [j])[0, 0]) for i in both), default=0.0)
 
 
-def _of_team(rules: TimedRules, u: int, values: Floats) -> dict[int, float]:
+def _of_team(rules: PlanModel, u: int, values: Floats) -> dict[int, float]:
     """For each task of a unit the least of the largest values of the members, if a team has these; inf: no team."""
     tasks, fits = rules.places(u)
     found: dict[int, float] = {}
     for j in rules.units[u]:
         rows = np.array([k for k, task in enumerate(tasks) if task == j])
         times = np.where(fits[rows], values[:, j], math.inf)
-        found[j] = _until_able(rules, j, values[:, j]) if rules.needs(j) else bottleneck(times)
+        found[j] = _until_able(rules, j, values[:, j]) if rules.sums(j) else bottleneck(times)
     return found
 
 
-def _until_able(rules: TimedRules, j: int, values: Floats) -> float:
+def _until_able(rules: PlanModel, j: int, values: Floats) -> float:
     """The least value up to which robots have the abilities that a task needs; inf: all have not."""
     order = np.argsort(values, kind="stable")
     order = order[np.isfinite(values[order])]
     latest = 0.0
-    for needed, able in rules.needs(j):
+    for needed, able in rules.sums(j).values():
         enough = np.flatnonzero(np.cumsum(able[order]) >= needed * (1 - ROUNDING))
         latest = max(latest, float(values[order[enough[0]]])) if len(enough) else math.inf
         if math.isinf(latest):

@@ -120,7 +120,7 @@ def _usage(problem: Problem, usable: Bools, least: Floats, due: Callable[[], boo
     and what `weighed_shares` and `far_shares` tell. (3) Total and greatest usage together are at least the sum of their
     bounds, for the same k. The bound is the least over k.
     """
-    members = [problem.timed_rules.least_members(j) for j in range(len(problem.tasks))]
+    members = [problem.model.least_members(j) for j in range(len(problem.tasks))]
     alone = float(kth_least(np.where(usable, least, math.inf), members).max())
     copied = with_copies(problem, usable)
     if copied is None:
@@ -197,12 +197,12 @@ def _average(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:
     open_ended = opened(problem)
     work = np.array([problem.work_usage(i) for i in range(len(problem.robots))])
     arrivals = np.where(usable, least_usages(open_ended) - work, math.inf)
-    alone = float(kth_least(arrivals, [problem.timed_rules.least_members(j) for j in range(len(problem.tasks))]).mean())
+    alone = float(kth_least(arrivals, [problem.model.least_members(j) for j in range(len(problem.tasks))]).mean())
     ways = Ways.of(open_ended, usable, with_surplus=False)
     steps = np.sort(ways.entering(after_work=True))[::-1]
     in_turn = float((steps * (np.arange(n) // m + 1)).sum()) / n
     named = {_LEAST_WAYS: alone, _IN_TURN: in_turn}
-    if not problem.timed_rules.with_teams:
+    if not problem.model.with_teams:
         named[_FORESTS] = least_arrivals(ways, m, due) / n
         named[_PATHS] = least_arrivals_on_paths(open_ended, usable, n * max(named.values()), due) / n
     best = max(named, key=lambda name: named[name])
@@ -254,4 +254,4 @@ def _lateness(problem: Problem, usable: Bools) -> Bound:
     if not np.isfinite(ends).all():
         return Bound(math.inf, (_CRITICAL,))
     priority = np.array([task.priority for task in problem.tasks])
-    return Bound(float((priority * np.maximum(0.0, ends - problem.timed_rules.due)).sum()), (_CRITICAL,))
+    return Bound(float((priority * np.maximum(0.0, ends - problem.model.due)).sum()), (_CRITICAL,))

@@ -10,15 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
 
 from muster.allocation.bounds import energy_curve
 from muster.allocation.bounds.energy_curve import Curve
 from muster.mission.stations import Station
 from muster.model.problem import Problem
-from muster.model.rules.battery import energy_at_start, energy_room
-from muster.model.rules.load import Load
 
 _ROUNDING = 1e-9
 _MOST_LABELS = 4_000  # of the way from one stop to the next
@@ -89,7 +85,7 @@ class RouteBounds:
 
     def _robot(self, i: int) -> _Robot:
         if i not in self._robots:
-            self._robots[i] = _Robot(self.problem, i, self._loads)
+            self._robots[i] = _Robot(self.problem, i)
         return self._robots[i]
 
     def _value(self, label: _Label) -> float:
@@ -98,30 +94,25 @@ class RouteBounds:
             return max(label.ended, label.curve[0][0]) if with_return else label.ended
         return label.extra if self.problem.objective in ("average", "lateness") else 0.0
 
-    @cached_property
-    def _loads(self) -> Any:
-        """The arrays of loads, as the core has them."""
-        return Load().core_arrays(self.problem)
-
 
 class _Robot:
     """The labels of one robot's routes, stop after stop."""
 
-    def __init__(self, problem: Problem, i: int, loads: Any) -> None:
-        self._problem, self._robot, self._i, self._arrays = problem, problem.robots[i], i, loads
+    def __init__(self, problem: Problem, i: int) -> None:
+        self._problem, self._robot, self._i = problem, problem.robots[i], i
         self._ways: dict[tuple[int, int], tuple[float, float]] = {}
         self._work, self._takes = problem.work_usage(i), problem.work_seconds(i)
-        self._full = energy_room(self._robot) if problem.holds("battery") else math.inf
+        self._full = float(problem.model.energy[i])
         self._drains = math.isfinite(self._full)
-        self._until = float(problem.timed_rules.over_by[i]) * (1 + _ROUNDING)
+        self._until = float(problem.model.over_by[i]) * (1 + _ROUNDING)
         self._most = float(problem.capacity[i]) * (1 + _ROUNDING) + _ROUNDING
-        self._goods = range(loads["meters"])
-        self._room = [float(loads["most_aboard"][i, c]) for c in self._goods]
+        self._goods = range(len(problem.model.meters))
+        self._room = [float(meter.most[i]) for meter in problem.model.meters]
         self._known: dict[tuple[int, ...], list[_Label]] = {(): [self._first()]}
         self._left = 0
 
     def _first(self) -> _Label:
-        at_start = energy_at_start(self._problem, self._i) if self._drains else energy_curve.NEVER_EMPTY
+        at_start = float(self._problem.model.energy_at_start[self._i]) if self._drains else energy_curve.NEVER_EMPTY
         nothing = (0.0,) * len(self._goods)
         return _Label(0.0, 0.0, 0.0, 0.0, [(self._robot.available_from_s, at_start)], nothing)
 
@@ -147,20 +138,20 @@ class _Robot:
     def _start_step(self, route: tuple[int, ...]) -> None:
         self._left = _MOST_LABELS
         self._loads = self._on_board(route)
-        self._kept = self._sums("pending", "pending_at_start", route)
+        self._kept = self._to_deliver(route)
 
     def _place(self, route: tuple[int, ...]) -> int:
         return route[-1] if route else self._problem.start(self._i)
 
     def _on_board(self, route: tuple[int, ...]) -> tuple[float, ...]:
         """The loads after a route as if the robot never unloaded."""
-        return self._sums("load", "load_at_start", route)
+        tasks = list(route)
+        return tuple(float(m.at_start[self._i] + m.change[tasks].sum()) for m in self._problem.model.meters)
 
-    def _sums(self, name: str, first: str, route: tuple[int, ...]) -> tuple[float, ...]:
-        arrays = self._arrays
-        return tuple(
-            float(arrays[first][self._i, c]) + sum(float(arrays[name][j, c]) for j in route) for c in self._goods
-        )
+    def _to_deliver(self, route: tuple[int, ...]) -> tuple[float, ...]:
+        """What of that other tasks are going to deliver: it stays on board where the robot unloads."""
+        tasks = list(route)
+        return tuple(float(m.pending_at_start[self._i] + m.pending[tasks].sum()) for m in self._problem.model.meters)
 
     def _home(self, labels: list[_Label], route: tuple[int, ...]) -> Iterator[_Label]:
         self._start_step(route)
@@ -228,7 +219,7 @@ class _Robot:
 
     def _worked(self, label: _Label, j: int, on_board: Sequence[float]) -> Iterator[_Label]:
         """Labels at a task once the work is done, one for each of its windows."""
-        rules, usage, takes = self._problem.timed_rules, float(self._work[j]), float(self._takes[j])
+        rules, usage, takes = self._problem.model, float(self._work[j]), float(self._takes[j])
         if label.usage + usage > self._most or not self._is_carried(label, on_board):
             return
         latest = (float(rules.ends_by[j]) - takes) * (1 + _ROUNDING) + _ROUNDING
@@ -246,7 +237,7 @@ class _Robot:
         if self._problem.objective == "average":
             return label.usage
         if self._problem.objective == "lateness":
-            return self._problem.tasks[j].priority * max(0.0, ended - float(self._problem.timed_rules.due[j]))
+            return self._problem.tasks[j].priority * max(0.0, ended - float(self._problem.model.due[j]))
         return 0.0
 
     @staticmethod

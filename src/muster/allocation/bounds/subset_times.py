@@ -47,7 +47,7 @@ def subset_ends(limits: Limits, i: int, tasks: Sequence[int]) -> Floats:
 
 def keep_relations(problem: Problem, tasks: Sequence[int]) -> Bools:
     """(2**k,) which sets of tasks one robot may do if all are done: both of `same_robot_as`, not both of others."""
-    rules, sets = problem.timed_rules, np.arange(1 << len(tasks))
+    rules, sets = problem.model, np.arange(1 << len(tasks))
     able = np.ones(len(sets), dtype=np.bool_)
     for k, j in enumerate(tasks):
         for at, other in enumerate(tasks[:k]):
@@ -90,7 +90,7 @@ def _done_before(problem: Problem, j: int) -> set[int]:
     found, waiting = {j}, [j]
     while waiting:
         k = waiting.pop()
-        new = {*problem.awaited[k], *problem.timed_rules.beginning_with(k)} - found
+        new = {*problem.awaited[k], *problem.model.beginning_with(k)} - found
         found |= new
         waiting += new
     return found
@@ -98,13 +98,13 @@ def _done_before(problem: Problem, j: int) -> set[int]:
 
 def tied_pairs(problem: Problem, tasks: Sequence[int]) -> list[tuple[int, int]]:
     """Pairs of tasks of which it matters whether the same robots do them."""
-    rules, chosen = problem.timed_rules, set(tasks)
+    rules, chosen = problem.model, set(tasks)
     tied = ({*rules.same_crew[j], *rules.apart[j], *rules.beginning_with(j)} for j in tasks)
     return [(j, k) for j, others in zip(tasks, tied, strict=True) for k in sorted(others & chosen) if j < k]
 
 
 def sizes_that_differ(problem: Problem, tasks: Sequence[int]) -> tuple[int, int] | None:
     """Two of the tasks that the same robots must do, though one needs more of them; None: there are none."""
-    rules = problem.timed_rules
+    rules = problem.model
     pairs = ((j, k) for j, k in tied_pairs(problem, tasks) if k in rules.same_crew[j] and rules.sizes_differ(j, k))
     return next(pairs, None)

@@ -27,11 +27,11 @@ def with_copies(problem: Problem, usable: Bools) -> Copied | None:
     None where teams may be larger than that and a way through a task can be shorter than the direct one: a robot more
     could make a route cheaper there.
     """
-    rules = problem.timed_rules
+    rules = problem.model
     if not rules.with_teams:
         return Copied(problem, usable)
     tasks = range(len(problem.tasks))
-    if len(problem.shortcuts()) and any(rules.needs(j) for j in tasks):
+    if len(problem.shortcuts()) and any(rules.sums(j) for j in tasks):
         return None
     copies = np.repeat(np.arange(len(tasks)), [rules.least_members(j) for j in tasks])
     return Copied(of_tasks(problem, copies.tolist()), usable[:, copies])

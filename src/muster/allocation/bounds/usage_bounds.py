@@ -86,11 +86,11 @@ class UsageBounds:
 
     def is_few(self, tasks: Sequence[int]) -> bool:
         """Whether all ways to share tasks out can be looked at."""
-        return sum(map(self.problem.timed_rules.least_members, tasks)) <= FEW
+        return sum(map(self.problem.model.least_members, tasks)) <= FEW
 
     def every_place(self, tasks: Sequence[int]) -> int:
         """All places of tasks, as bits: of each as many as it has members at least."""
-        return (1 << sum(map(self.problem.timed_rules.least_members, tasks))) - 1
+        return (1 << sum(map(self.problem.model.least_members, tasks))) - 1
 
     def shares(self, robots: Iterable[int], tasks: Sequence[int]) -> list[int]:
         """The largest sets of places of few tasks, as bits, that robots may be able to fill between them."""
@@ -188,7 +188,7 @@ def _places(problem: Problem, tasks: Sequence[int]) -> list[int]:
     """For each task its places, as bits."""
     places, first = [], 0
     for j in tasks:
-        count = problem.timed_rules.least_members(j)
+        count = problem.model.least_members(j)
         places.append(((1 << count) - 1) << first)
         first += count
     return places

@@ -160,7 +160,7 @@ class _Resource:
 
     def _least(self, j: int) -> float:
         """The least work of a task, all members together: each works as long as the slowest, or pays its own cost."""
-        count = self.problem.timed_rules.least_members(j)
+        count = self.problem.model.least_members(j)
         least = np.sort(self.work[self.possible[:, j], j])[:count]
         if len(least) < count:
             return 0.0
@@ -174,7 +174,7 @@ _SECONDS = "robot-seconds"
 def _resources(problem: Problem, possible: Bools, tasks: Sequence[int]) -> Iterator[_Resource]:
     robots = range(len(problem.robots))
     seconds = np.array([problem.work_seconds(i) for i in robots])
-    rules, start = problem.timed_rules, np.array([robot.available_from_s for robot in problem.robots])
+    rules, start = problem.model, np.array([robot.available_from_s for robot in problem.robots])
     until = rules.over_by
     longest = seconds.max(axis=0, initial=0.0)  # a team takes as long as its slowest member
     last = np.array([_last_end(problem, [j for j in tasks if possible[i, j]], longest) for i in robots])
@@ -190,7 +190,7 @@ def _resources(problem: Problem, possible: Bools, tasks: Sequence[int]) -> Itera
 
 def _last_end(problem: Problem, tasks: Sequence[int], longest: Floats) -> float:
     """When the last of some tasks ends at the latest, by windows and deadlines."""
-    rules = problem.timed_rules
+    rules = problem.model
     ends = [
         min(float(rules.ends_by[j]), rules.openings[j][-1][1] + float(longest[j]) if rules.openings[j] else math.inf)
         for j in tasks

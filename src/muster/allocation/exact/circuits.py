@@ -25,7 +25,7 @@ class Circuits:
 
     def __init__(self, problem: Problem, usable: Bools, costs: Costs, *, with_detours: bool = False) -> None:
         self._with_detours = with_detours
-        self.problem, self.rules, self.costs = problem, problem.timed_rules, costs
+        self.problem, self.rules, self.costs = problem, problem.model, costs
         self.model = cp_model.CpModel()
         self.robots, self.tasks = range(len(problem.robots)), range(len(problem.tasks))
         self.start = len(problem.tasks)

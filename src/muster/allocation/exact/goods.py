@@ -17,9 +17,8 @@ import numpy as np
 from muster.allocation.bounds.route_bounds import RouteBounds
 from muster.allocation.exact.circuits import Circuits
 from muster.allocation.exact.costs import real_costs, real_usage
+from muster.mission.values.arrays import Floats
 from muster.model.problem import Problem
-from muster.model.rules.battery import Battery
-from muster.model.rules.load import Load, pickups
 
 _LOAD_UNITS = 2.0**24  # of the greatest amount
 _ROUNDING = 1e-9
@@ -59,14 +58,14 @@ def most_seconds(problem: Problem) -> float:
 def add_goods(circuits: Circuits) -> None:
     """Let transports be whole, loads fit on board, and batteries last where no station fills them."""
     problem, model = circuits.problem, circuits.model
-    for j, k in enumerate(pickups(problem)):
+    for j, k in enumerate(problem.model.pickups):
         if k >= 0:
             model.add(circuits.done[j] == circuits.done[k])
             for i in circuits.robots:
                 model.add(circuits.does.get((i, j), 0) == circuits.does.get((i, k), 0))
     _loads(circuits)
     if problem.asked.get("battery") and not any(station.gives_energy for station in problem.mission.stations):
-        for i, most in enumerate(Battery().core_arrays(problem)["energy_at_start"]):
+        for i, most in enumerate(problem.model.energy_at_start):
             if np.isfinite(most):
                 model.add(circuits.usage[i] <= circuits.costs.scale.at_most(float(most)))
 
@@ -78,16 +77,16 @@ def _unloads(problem: Problem) -> bool:
 def _loads(circuits: Circuits) -> None:
     """What is on board after each task, by commodity; where stations unload, only what is going to be delivered."""
     problem = circuits.problem
-    arrays = Load().core_arrays(problem)
     if circuits.rules.with_teams:
         return  # each member takes it on board: left to the cuts
-    change, first = ("pending", "pending_at_start") if _unloads(problem) else ("load", "load_at_start")
-    for c in range(arrays["meters"]):
-        own = arrays[change][:, c], arrays[first][:, c], arrays["most_aboard"][:, c]
-        _commodity(circuits, *own)
+    for meter in problem.model.meters:
+        if _unloads(problem):
+            _meter(circuits, meter.pending, meter.pending_at_start, meter.most)
+        else:
+            _meter(circuits, meter.change, meter.at_start, meter.most)
 
 
-def _commodity(circuits: Circuits, change: Any, first: Any, room: Any) -> None:
+def _meter(circuits: Circuits, change: Floats, first: Floats, room: Floats) -> None:
     """Amounts are rounded to units, and limits give way to as many roundings as there are."""
     model, slack = circuits.model, len(change) + 1
     unit = _LOAD_UNITS / max(1e-12, float(np.abs(change).max()), float(np.abs(first).max()))

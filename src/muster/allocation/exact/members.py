@@ -9,7 +9,6 @@ import math
 from typing import Any
 
 from muster.allocation.exact.circuits import Circuits
-from muster.model.rules.min_tasks import least_tasks
 
 _ABILITY_UNITS = 2.0**24  # of the greatest need
 _ROUNDING = 1e-9
@@ -20,7 +19,7 @@ def add_members(circuits: Circuits) -> None:
     rules, model = circuits.rules, circuits.model
     for j in circuits.tasks:
         members = [circuits.does[i, j] for i in circuits.members(j)]
-        if rules.needs(j):
+        if rules.sums(j):
             _needs(circuits, j, members)
         elif rules.is_for_team(j):
             _parts(circuits, j)
@@ -37,7 +36,7 @@ def _needs(circuits: Circuits, j: int, members: list[Any]) -> None:
     model.add_bool_or([*members, done.negated()])
     for member in members:
         model.add_implication(member, done)
-    for needed, abilities in circuits.rules.needs(j):
+    for needed, abilities in circuits.rules.sums(j).values():
         units = _ABILITY_UNITS / max(needed, 1e-12)
         least = math.floor(needed * (1 - _ROUNDING) * units)
         sums = (math.ceil(min(abilities[i], needed) * units) * circuits.does[i, j] for i in circuits.members(j))
@@ -47,7 +46,7 @@ def _needs(circuits: Circuits, j: int, members: list[Any]) -> None:
 def _parts(circuits: Circuits, j: int) -> None:
     """Each member has a place of one part, and each part has all its places taken."""
     model, seats = circuits.model, dict[int, list[Any]]()
-    for count, fits in circuits.rules.parts(j):
+    for count, fits in circuits.rules.seats(j):
         taken = []
         for i in circuits.members(j):
             if fits[i]:
@@ -69,7 +68,7 @@ def _units(circuits: Circuits) -> None:
 
 def _enough_tasks(circuits: Circuits) -> None:
     """A robot that does any task does as many as it must."""
-    for i, least in enumerate(least_tasks(circuits.problem).tolist()):
+    for i, least in enumerate(circuits.rules.least_stops.tolist()):
         if least > 1:
             does = [circuits.does[i, j] for j in circuits.tasks if (i, j) in circuits.does]
             circuits.model.add(sum(does) >= least * circuits.used[i])

@@ -65,7 +65,7 @@ class Program:
         self._weights = weights
         sums, detours = max(len(problem.tasks), len(problem.robots)), most_detours(problem)
         self._costs = Costs.of(problem, sums=sums, begin=detours)
-        self._rules = problem.timed_rules
+        self._rules = problem.model
         self._circuits = Circuits(problem, usable, self._costs, with_detours=needs_stations(problem))
         self.model = self._circuits.model
         self._done = self._circuits.done

@@ -190,7 +190,7 @@ class _Solving:
 
     def _alone(self) -> bool:
         """Whether every task is done by one robot, and none is in a route already."""
-        return not self._problem.fixed and not self._problem.timed_rules.with_teams
+        return not self._problem.fixed and not self._problem.model.with_teams
 
     def _counts(self) -> Sequence[int | None]:
         """How many tasks the plans of the plan's weight may complete, where the objective asks for that."""

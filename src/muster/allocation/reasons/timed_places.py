@@ -105,7 +105,7 @@ class TimedPlaces(TimedTeams):
     def _left_out_with(self, j: int) -> str:
         """What the tasks that begin together with a task lack; empty: nothing."""
         problem, whole = self.problem, self.problem.with_partner(j)
-        for k in problem.timed_rules.beginning_with(j):
+        for k in problem.model.beginning_with(j):
             if k in self.done:
                 continue
             before = [problem.tasks[b].id for b in problem.prerequisites[k] if b not in self.done and b not in whole]
@@ -117,7 +117,7 @@ class TimedPlaces(TimedTeams):
         """The rule by which a task can only be done together with the tasks of a transport."""
         if self.problem.partners[j] is not None:
             return "load"
-        return "relation" if self.problem.timed_rules.beginning_with(j) else "prerequisite"
+        return "relation" if self.problem.model.beginning_with(j) else "prerequisite"
 
     def _transport_lacks(self, i: int, j: int) -> str:
         """What keeps robot i from the other task of a transport; empty: nothing."""
@@ -176,7 +176,7 @@ class TimedPlaces(TimedTeams):
 
     def _tie_to_others(self, j: int) -> str:
         """The rule by which other robots must do something beside one that does a task; empty: none."""
-        rules = self.problem.timed_rules
+        rules = self.problem.model
         if rules.beginning_with(j):
             return "relation"
         if rules.is_for_team(j):
@@ -289,7 +289,7 @@ class TimedPlaces(TimedTeams):
 
     def _of_whole(self, i: int, j: int, whole: Sequence[int]) -> list[Place]:
         """The places of tasks that can only be done together."""
-        rules = self.problem.timed_rules
+        rules = self.problem.model
         if len(whole) == 2 and not any(rules.is_for_team(k) or rules.beginning_with(k) for k in whole):
             return list(self._of_transport(i, j, whole))
         units = [[k for k in whole if rules.unit[k] == unit] for unit in dict.fromkeys(rules.unit[k] for k in whole)]

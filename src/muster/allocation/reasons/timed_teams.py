@@ -44,7 +44,7 @@ class TimedTeams(InPlan):
 
     def _teams(self, i: int, j: int) -> Iterator[list[Member]]:
         """Different robots for all places of a task and of those that begin with it, robot i at the task."""
-        rules = self.problem.timed_rules
+        rules = self.problem.model
         together = rules.beginning_with(j)
         unit = [j, *(k for k in together if k not in self.done)]
         taken = {robot for k in together for robot in self.members(k)}
@@ -79,43 +79,43 @@ class TimedTeams(InPlan):
                     yield team
 
     def _sizes(self, j: int, most: int) -> range:
-        rules = self.problem.timed_rules
-        if rules.is_for_team(j) and rules.needs(j):
+        rules = self.problem.model
+        if rules.is_for_team(j) and rules.sums(j):
             return range(1, most + 1)
-        count = sum(count for count, _ in rules.parts(j))
+        count = sum(count for count, _ in rules.seats(j))
         return range(count, count + 1)
 
     def _is_enough(self, j: int, team: Sequence[int]) -> bool:
         """Whether robots fill the places of a team, or have the abilities."""
-        rules = self.problem.timed_rules
-        if rules.is_for_team(j) and rules.needs(j):
+        rules = self.problem.model
+        if rules.is_for_team(j) and rules.sums(j):
             return self._able(j, team)
-        rows = [fits[list(team)] for count, fits in rules.parts(j) for _ in range(count)]
+        rows = [fits[list(team)] for count, fits in rules.seats(j) for _ in range(count)]
         return len(rows) == len(team) and fills(np.array(rows, dtype=np.bool_))
 
     def _without_idlers(self, j: int, team: Sequence[int]) -> bool:
         """Whether a team of abilities needs all members but the first one."""
-        rules = self.problem.timed_rules
-        if not (rules.is_for_team(j) and rules.needs(j)):
+        rules = self.problem.model
+        if not (rules.is_for_team(j) and rules.sums(j)):
             return True
         return not any(self._able(j, [k for k in team if k != one]) for one in team[1:])
 
     def _able(self, j: int, team: Sequence[int]) -> bool:
-        needs = self.problem.timed_rules.needs(j)
-        return all(float(able[list(team)].sum()) >= needed * (1 - ROUNDING) for needed, able in needs)
+        needs = self.problem.model.sums(j)
+        return all(float(able[list(team)].sum()) >= needed * (1 - ROUNDING) for needed, able in needs.values())
 
     def _by_arrival(self, j: int) -> list[int]:
         able = [k for k in range(len(self.problem.robots)) if self.problem.may(k, j)]
         return sorted(able, key=lambda k: (self._arrival(k, j, len(self.routes[k])), k))
 
     def _keeps_relations(self, k: int, j: int) -> bool:
-        rules = self.problem.timed_rules
+        rules = self.problem.model
         same = all(not self.members(other) or k in self.members(other) for other in rules.same_crew[j])
         return same and not any(k in self.members(other) for other in rules.apart[j])
 
     def _members_by_relation(self, j: int) -> set[int] | None:
         """The robots that do the tasks of the plan which the same robots must do; None: there are no such tasks."""
-        teams = [set(self.members(k)) for k in self.problem.timed_rules.same_crew[j] if self.members(k)]
+        teams = [set(self.members(k)) for k in self.problem.model.same_crew[j] if self.members(k)]
         return set.intersection(*teams) if teams else None
 
 

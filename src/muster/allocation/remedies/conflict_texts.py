@@ -53,7 +53,7 @@ def _too_much_together(bounds: UsageBounds, robots: list[int], tasks: list[int],
 
 def _tied(bounds: UsageBounds, tasks: list[int]) -> str:
     """That two tasks must have the same robots, or others, and there are none."""
-    problem, rules = bounds.problem, bounds.problem.timed_rules
+    problem, rules = bounds.problem, bounds.problem.model
     if (pair := sizes_that_differ(problem, tasks)) is not None:
         (a, few), (b, many) = ((problem.tasks[j].id, rules.least_members(j)) for j in pair)
         return f"the same robots must do {a} and {b}; {a} needs {counted(few, 'robot')}, {b} {counted(many, 'robot')}"

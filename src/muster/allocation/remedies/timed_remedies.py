@@ -101,7 +101,7 @@ def _with(remedy: Remedy, word: str, change: Change) -> Remedy:
 
 def _untied(problem: Problem, rest: Routes, j: int) -> Untied | None:
     """The relations of a task to tasks of the plan, or to tasks that begin with it; None: it has none."""
-    task, rules = problem.tasks[j], problem.timed_rules
+    task, rules = problem.tasks[j], problem.model
     done = {k for route in rest for k in route} | set(rules.beginning_with(j))
     names = {problem.tasks[k].id for k in done}
     found = [(key, name) for key in _RELATIONS for name in getattr(task, key) if name in names]
@@ -141,7 +141,7 @@ def _lifted_and_tried(
 
 def _without_limits(problem: Problem, i: int, j: int) -> dict[str, Change]:
     """The window and the deadline of the task and the shift of the robot without ends, as far as they have one."""
-    rules, found = problem.timed_rules, dict[str, Change]()
+    rules, found = problem.model, dict[str, Change]()
     if rules.openings[j] and math.isfinite(rules.openings[j][-1][1]):
         found["window"] = LongerWindow(rules.openings[j][-1][1], None)
     if math.isfinite(rules.ends_by[j]):
@@ -186,7 +186,7 @@ def _lack(
 ) -> tuple[int, float, float]:
     """What a plan needs beyond the limits of task and robot, kinds of change and seconds, then its robot's usage."""
     begin, end, over = _times(opened, routes, found, at, of)
-    rules = problem.timed_rules
+    rules = problem.model
     close = rules.openings[j][-1][1] if rules.openings[j] else math.inf
     beyond = [
         time - limit
@@ -217,7 +217,7 @@ def _needed(
     at, of = opened.robot_index[remedy.robot], opened.task_index[problem.tasks[j].id]
     inspection = core.Inspection(opened.core, routes)
     begin, end, over = _times(opened, routes, inspection, at, of)
-    limits, rules = limits_of(opened, timed=True), problem.timed_rules
+    limits, rules = limits_of(opened, timed=True), problem.model
     narrowed = {word: change.narrowed(len(routes[at])) for word, change in remedy.changes.items()}
     if isinstance(battery := narrowed.get("battery"), LargerBattery):
         narrowed["battery"] = battery.for_usage(problem.robots[i], inspection.usages[at])

@@ -192,7 +192,7 @@ def _teams(routes: Mapping[str, Sequence[str]]) -> dict[str, str]:
 
 def without_units(problem: Problem, routes: Routes, tasks: Iterable[int]) -> Routes:
     """The routes without some tasks, and without those that begin with them."""
-    gone = {other for j in tasks for other in (j, *problem.timed_rules.beginning_with(j))}
+    gone = {other for j in tasks for other in (j, *problem.model.beginning_with(j))}
     return [[j for j in route if j not in gone] for route in routes]
 
 

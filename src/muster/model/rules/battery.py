@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
-
-import numpy as np
+from typing import ClassVar
 
 from muster import core
 from muster.mission.model import Robot
+from muster.model.parts import Parts
 from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot
 
 
@@ -59,19 +58,10 @@ class Battery(Rule):
             return {"battery": None}
         return {"battery": first_robot(problem, "battery", lambda i: problem.robots[i].battery)}
 
-    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        stations = [
-            (s.charge_per_s or 0.0, s.swap_s if s.swaps else -1.0, s.unloads, s.partial, s.slots)
-            for s in problem.mission.stations
-        ]
-        robots = problem.robots
-        if not problem.holds(self.word) or all(robot.battery is None for robot in robots):
-            return {"energy": np.empty(0), "energy_at_start": np.empty(0), "stations": stations}
-        return {
-            "energy": np.array([energy_room(robot) for robot in robots]),
-            "energy_at_start": np.array([energy_at_start(problem, i) for i in range(len(robots))]),
-            "stations": stations,
-        }
+    def compile(self, problem: Question, parts: Parts) -> None:
+        for i, robot in enumerate(problem.robots):
+            if robot.battery is not None:
+                parts.has_energy(i, energy_room(robot), energy_at_start(problem, i))
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
         return problem.robots[i].battery if problem.holds(self.word) else None

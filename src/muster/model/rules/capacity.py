@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from muster import core
+from muster.model.parts import Parts
 from muster.model.rules.rule import ROUNDING, Bools, InPlan, Limits, Outlook, Question, Routes, Rule
 
 
@@ -20,6 +21,12 @@ class Capacity(Rule):
     lifted_late = True
     of_a_route = True
     of_the_team = True
+
+    def compile(self, problem: Question, parts: Parts) -> None:
+        usable = 1.0 - problem.mission.rules.capacity_reserve
+        for i, robot in enumerate(problem.robots):
+            if robot.work_capacity is not None:
+                parts.uses(i, usable * robot.work_capacity)
 
     def possible(self, limits: Limits) -> Bools:
         return np.asarray(limits.usage <= limits.problem.capacity[:, None] * (1 + ROUNDING))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from muster.mission.model import Robot, Task
+from muster.model.parts import Parts
 from muster.model.rules.rule import (
     ROUNDING,
     Bools,
@@ -19,7 +20,6 @@ from muster.model.rules.rule import (
     Question,
     Rule,
     first_task,
-    limits_array,
 )
 from muster.model.rules.times import known_least, longer, moments, span
 
@@ -61,11 +61,13 @@ class Deadline(Rule):
     key = "deadline"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        deadline = problem.timed_rules.ends_by
+        deadline = problem.model.ends_by
         return {"deadline": first_task(problem, "deadline_s", lambda j: np.isfinite(deadline[j]))}
 
-    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        return {"ends_by": limits_array(problem.timed_rules.ends_by)}
+    def compile(self, problem: Question, parts: Parts) -> None:
+        for j, task in enumerate(problem.tasks):
+            if task.deadline_s is not None:
+                parts.ends(j, task.deadline_s)
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.is_timed:
@@ -76,15 +78,15 @@ class Deadline(Rule):
         limits = outlook.limits
         if not limits.is_timed or too_late(problem, j, float(limits.pair_end[i, j])) is None:
             return None
-        free = limits.without_deadline(j)
-        (until,) = moments(problem, float(problem.timed_rules.ends_by[j]))
+        free = limits.without(self.word, j)
+        (until,) = moments(problem, float(problem.model.ends_by[j]))
         late = None if free is None else too_late(problem, j, float(free.pair_end[i, j]))
         return late or f"what it waits for is too late for its deadline, which is {until}"
 
 
 def too_late(problem: Question, j: int, end: float) -> str | None:
     """That work on a task which ends at a time is too late; None: it is not."""
-    deadline = float(problem.timed_rules.ends_by[j])
+    deadline = float(problem.model.ends_by[j])
     if math.isinf(end) or end <= deadline * (1 + ROUNDING):
         return None
     ends, until = moments(problem, end, deadline)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from muster import core
 from muster.mission.goods import by_commodity, shown_amounts
 from muster.mission.model import Robot, Task
+from muster.model.parts import Meter, Parts
 from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot, first_task
 
 Amounts = Mapping[str, float]
-_ARRAYS = ("load", "pending", "most_aboard", "load_at_start", "pending_at_start")
 
 
 @dataclass(frozen=True)
@@ -57,32 +57,13 @@ class Load(Rule):
     def _holds(self, problem: Question) -> bool:
         return problem.holds(self.word)
 
-    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        names, none = commodities(problem), np.empty(0)
-        if not names:
-            arrays: dict[str, Any] = dict.fromkeys(_ARRAYS, none)
-            return arrays | {"meters": 0, "pickup": np.empty(0, dtype=np.int32)}
-        pickup = pickups(problem)
-        delivered = {k for k in pickup if k >= 0}
-        own = np.array([[by_commodity(task.load).get(name, 0.0) for name in names] for task in problem.tasks])
-        own = own.reshape(len(problem.tasks), len(names))
-        put_down = np.array([own[k] if k >= 0 else np.zeros(len(names)) for k in pickup]).reshape(own.shape)
-        taken_on = np.array([own[j] if j in delivered else np.zeros(len(names)) for j in range(len(own))])
-        taken_on = taken_on.reshape(own.shape)
-        aboard = np.zeros((len(problem.robots), len(names)))
-        for i, deliveries in enumerate(problem.aboard):
-            for j in deliveries:
-                aboard[i] -= own[j]
-                taken_on[j] = own[j]
-        return {
-            "meters": len(names),
-            "load": own - put_down,
-            "pending": taken_on - put_down,
-            "pickup": np.array(pickup if delivered else [], dtype=np.int32),
-            "most_aboard": np.array([[room_for(robot, name) for name in names] for robot in problem.robots]),
-            "pending_at_start": aboard,
-            "load_at_start": np.array([[_at_start(one).get(name, 0.0) for name in names] for one in problem.robots]),
-        }
+    def compile(self, problem: Question, parts: Parts) -> None:
+        names = commodities(problem)
+        for j, task in enumerate(problem.tasks):
+            if task.delivers in problem.task_index:
+                parts.deliver(j, problem.task_index[task.delivers])
+        for name in names:
+            parts.meter(_meter(problem, name, parts.taken_on_by))
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
         robot = problem.robots[i]
@@ -99,7 +80,7 @@ class Load(Rule):
 
     def possible(self, limits: Limits) -> Bools | None:
         """Both tasks of a transport, or neither."""
-        pickup = pickups(limits.problem)
+        pickup = limits.problem.model.pickups
         if not any(k >= 0 for k in pickup):
             return None
         possible = np.ones_like(limits.usable)
@@ -142,10 +123,26 @@ def commodities(problem: Question) -> list[str]:
     return sorted(named | {name for robot in problem.robots for name in _at_start(robot)})
 
 
-def pickups(problem: Question) -> list[int]:
-    """For each task the one whose load it delivers; -1: none, or one that is not in the problem."""
-    index = {task.id: j for j, task in enumerate(problem.tasks)} if problem.holds("load") else {}
-    return [index.get(task.delivers, -1) if task.delivers is not None else -1 for task in problem.tasks]
+def _meter(problem: Question, name: str, pickup_of: Mapping[int, int]) -> Meter:
+    """What tasks change of a commodity on board, and what of that others deliver."""
+    own = np.array([by_commodity(task.load).get(name, 0.0) for task in problem.tasks])
+    change, pending, pending_at_start = own.copy(), np.zeros(len(own)), np.zeros(len(problem.robots))
+    for j, pickup in pickup_of.items():
+        pending[pickup] += own[pickup]
+        pending[j] -= own[pickup]
+        change[j] -= own[pickup]
+    for i, deliveries in enumerate(problem.aboard):
+        for j in deliveries:
+            pending_at_start[i] -= own[j]
+            pending[j] += own[j]
+    return Meter(
+        name,
+        change,
+        np.array([room_for(robot, name) for robot in problem.robots]),
+        np.array([_at_start(robot).get(name, 0.0) for robot in problem.robots]),
+        pending,
+        pending_at_start,
+    )
 
 
 def room_for(robot: Robot, commodity: str) -> float:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
 from muster import core
 from muster.mission.model import Mission, Robot
 from muster.mission.texts.counting import counted
+from muster.model.parts import Parts
 from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot, listed
 
 
@@ -53,24 +53,25 @@ class MinTasks(Rule):
     key = "min_tasks"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        return {"min-tasks": first_robot(problem, "min_tasks", lambda i: _least(problem, i) > 1)}
+        return {"min-tasks": first_robot(problem, "min_tasks", lambda i: int(problem.model.least_stops[i]) > 1)}
 
-    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        least = least_tasks(problem)
-        return {"least_stops": least if (least > 1).any() else np.empty(0, dtype=np.int32)}
+    def compile(self, problem: Question, parts: Parts) -> None:
+        for i, robot in enumerate(problem.robots):
+            if robot.min_tasks > 1:
+                parts.stops(i, min(robot.min_tasks, len(problem.tasks) + 1))
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
-        return _least(problem, i)
+        return int(problem.model.least_stops[i])
 
     def possible(self, limits: Limits) -> Bools | None:
-        least = least_tasks(limits.problem)
+        least = limits.problem.model.least_stops
         if not (least > 1).any():
             return None
         enough = limits.usable.sum(axis=1) >= least
         return np.broadcast_to(enough[:, None], limits.usable.shape)
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        least = _least(problem, i)
+        least = int(problem.model.least_stops[i])
         if least <= 1 or outlook.limits.usable[i].sum() >= least:
             return None
         may = sum(problem.may(i, k) for k in range(len(problem.tasks)))
@@ -78,7 +79,7 @@ class MinTasks(Rule):
         return f"does at least {least} tasks or none, {only}"
 
     def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str:
-        least = least_tasks(problem)
+        least = problem.model.least_stops
         short = [{k: len(r) for k, r in enumerate(routes) if 0 < len(r) < least[k]} for routes, _ in places]
         said = (
             f"{problem.robots[k].id} would do {counted(n, 'task')}, and does at least {least[k]} or none"
@@ -92,17 +93,8 @@ class MinTasks(Rule):
         return f"min_tasks {robot.min_tasks}, and the mission has {counted(len(mission.tasks), 'task')}"
 
     def too_few(self, problem: Question, i: int, tasks: int) -> bool:
-        return 0 < tasks < _least(problem, i)
+        return 0 < tasks < int(problem.model.least_stops[i])
 
     def lifted(self, problem: Question, i: int) -> Change | None:
         least = problem.robots[i].min_tasks
         return FewerTasks(least, 0) if least > 1 else None
-
-
-def least_tasks(problem: Question) -> npt.NDArray[np.int32]:
-    """(m,) how many tasks robots do at least that do any; as many as bind, one more than there are tasks at most."""
-    return np.array([_least(problem, i) for i in range(len(problem.robots))], dtype=np.int32)
-
-
-def _least(problem: Question, i: int) -> int:
-    return min(problem.robots[i].min_tasks, len(problem.tasks) + 1) if problem.holds(MinTasks.word) else 0

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
+from muster.model.parts import Parts
 from muster.model.rules.rule import (
     Bools,
     InPlan,
@@ -15,14 +16,13 @@ from muster.model.rules.rule import (
     Question,
     Rule,
     first_task,
-    limits_array,
     listed,
 )
 
 
 def _awaited_lags(problem: Question, j: int) -> list[tuple[float, float]]:
     """For each task that must be done before task j, also the one whose goods it delivers, the least and most lag."""
-    known = {k: (after, within) for k, after, within in problem.timed_rules.gaps(j)}
+    known = {k: (after, within) for k, after, within in problem.model.gaps(j)}
     return [known.get(k, (0.0, np.inf)) for k in problem.awaited[j]]
 
 
@@ -33,14 +33,16 @@ class Prerequisite(Rule):
     asked = ("lag",)
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        lags = problem.timed_rules.gaps
+        lags = problem.model.gaps
         lagged = [any(after or np.isfinite(within) for _, after, within in lags(j)) for j in range(len(problem.tasks))]
         return {"lag": first_task(problem, "prerequisites with after_s or within_s", lambda j: lagged[j])}
 
-    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        lags = [lag for j in range(len(problem.tasks)) for lag in _awaited_lags(problem, j)]
-        after, within = np.array(lags).reshape(-1, 2).T
-        return {"gap_least": after if after.any() else np.empty(0), "gap_most": limits_array(within)}
+    def compile(self, problem: Question, parts: Parts) -> None:
+        for j, task in enumerate(problem.tasks):
+            for name in task.prerequisites:
+                lag = task.lags.get(name)
+                after_s, within_s = (lag.after_s, lag.within_s) if lag else (0.0, None)
+                parts.follows(j, problem.task_index[name], after_s, np.inf if within_s is None else within_s)
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.held_back:

@@ -10,6 +10,7 @@ import numpy as np
 
 from muster.mission.model import Robot, Task
 from muster.model.bottleneck import on_some_matching
+from muster.model.parts import Parts
 from muster.model.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_task, listed
 
 
@@ -50,7 +51,7 @@ class Relation(Rule):
     key = "relation"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        rules = problem.timed_rules
+        rules = problem.model
         same = _stated(problem, "same_robot_as", lambda j: rules.same_crew[j])
         whole = len(rules.units) == len(problem.tasks)
         return {
@@ -58,13 +59,18 @@ class Relation(Rule):
             "starts-with": None if whole else first_task(problem, "starts_with", rules.beginning_with),
         }
 
-    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        rules, alone = problem.timed_rules, len(problem.timed_rules.units) == len(problem.tasks)
-        return {
-            "unit": np.array([] if alone else rules.unit, dtype=np.int32),
-            "same_crew": rules.same_crew if any(rules.same_crew) else [],
-            "apart": rules.apart if any(rules.apart) else [],
+    def compile(self, problem: Question, parts: Parts) -> None:
+        """Of a part of a mission not all tasks are there, and then nothing is tied."""
+        ties = {
+            "same_robot_as": parts.by_one_crew,
+            "other_robot_than": parts.by_others,
+            "starts_with": parts.begin_together,
         }
+        for j, task in enumerate(problem.tasks):
+            for relation, tie in ties.items():
+                for name in getattr(task, relation):
+                    if name in problem.task_index:
+                        tie(j, problem.task_index[name])
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.rules.with_relations:
@@ -97,7 +103,7 @@ class Relation(Rule):
         return f"begins together with {names}, for which no different robots are left"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
-        problem, rules = plan.problem, plan.problem.timed_rules
+        problem, rules = plan.problem, plan.problem.model
         for k in rules.same_crew[j]:
             if plan.members(k) and i not in plan.members(k):
                 by = listed([problem.robots[m].id for m in plan.members(k)])

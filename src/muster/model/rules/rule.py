@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from muster import core
 from muster.mission.model import Mission, Robot, Task
-from muster.model.plan_model import TimedRules
+from muster.model.parts import Parts
+from muster.model.plan_model import PlanModel
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -40,6 +41,8 @@ class Question(Protocol):
     @property
     def awaited(self) -> list[list[int]]: ...
     @property
+    def task_index(self) -> dict[str, int]: ...
+    @property
     def kinds(self) -> npt.NDArray[np.int32]: ...
     @property
     def usage_unit(self) -> str: ...
@@ -54,7 +57,7 @@ class Question(Protocol):
     @property
     def core(self) -> core.Problem: ...
     @property
-    def timed_rules(self) -> TimedRules: ...
+    def model(self) -> PlanModel: ...
 
     def holds(self, rule: str) -> bool: ...
 
@@ -73,7 +76,7 @@ class Limits(Protocol):
     @property
     def problem(self) -> Question: ...
     @property
-    def rules(self) -> TimedRules: ...
+    def rules(self) -> PlanModel: ...
     @property
     def is_timed(self) -> bool: ...
     @property
@@ -100,11 +103,7 @@ class Limits(Protocol):
 
     def must_also(self, j: int) -> list[int]: ...
 
-    def without_shift(self, i: int) -> Limits | None: ...
-
-    def without_deadline(self, j: int) -> Limits | None: ...
-
-    def without_windows(self, j: int) -> Limits | None: ...
+    def without(self, word: str, at: int) -> Limits | None: ...
 
 
 class Change:
@@ -253,9 +252,8 @@ class Rule:
         """For each word of `asked` the place of a problem that asks for it first; None: none does."""
         return {}
 
-    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        """What the core has to know of it: arguments of `core.Problem`; what is empty binds nothing."""
-        return {}
+    def compile(self, problem: Question, parts: Parts) -> None:
+        """Contribute the primitives that it comes to."""
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
         """What it depends on of robot i, beside the tasks that the robot may do: the same for robots that are alike."""
@@ -317,11 +315,6 @@ def first_robot(problem: Question, key: str, has: Callable[[int], object]) -> st
     """The same of robots."""
     first = next((robot.id for i, robot in enumerate(problem.robots) if has(i)), None)
     return None if first is None else f"robot {first}: {key}"
-
-
-def limits_array(limits: Floats) -> Floats:
-    """Limits for the core, which takes none for infinite ones."""
-    return limits if np.isfinite(limits).any() else np.empty(0)
 
 
 def listed(names: Collection[str]) -> str:

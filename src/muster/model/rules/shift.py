@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Hashable, Mapping
 from dataclasses import asdict, dataclass, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from muster.mission.model import Robot
+from muster.model.parts import Parts
 from muster.model.rules.rule import (
     ROUNDING,
     Bools,
@@ -19,7 +20,6 @@ from muster.model.rules.rule import (
     Question,
     Rule,
     first_robot,
-    limits_array,
 )
 from muster.model.rules.times import known_least, longer, moments
 
@@ -65,14 +65,16 @@ class Shift(Rule):
     key = "shift"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        until = problem.timed_rules.over_by
+        until = problem.model.over_by
         return {"shift": first_robot(problem, "available_until_s", lambda i: np.isfinite(until[i]))}
 
-    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        return {"over_by": limits_array(problem.timed_rules.over_by)}
+    def compile(self, problem: Question, parts: Parts) -> None:
+        for i, robot in enumerate(problem.robots):
+            if robot.available_until_s is not None:
+                parts.is_over(i, robot.available_until_s)
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
-        return float(problem.timed_rules.over_by[i])
+        return float(problem.model.over_by[i])
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.is_timed:
@@ -84,8 +86,8 @@ class Shift(Rule):
         limits = outlook.limits
         if not limits.is_timed or beyond(problem, i, _end(limits, i, j)) is None:
             return None
-        free = limits.without_shift(i)
-        (until,) = moments(problem, float(problem.timed_rules.over_by[i]))
+        free = limits.without(self.word, i)
+        (until,) = moments(problem, float(problem.model.over_by[i]))
         late = None if free is None else beyond(problem, i, _end(free, i, j))
         return late or f"what it waits for is too late for its shift, which ends at {until}"
 
@@ -97,7 +99,7 @@ def _end(limits: Limits, i: int, j: int) -> float:
 
 def beyond(problem: Question, i: int, end: float) -> str | None:
     """That a route which ends at a time is beyond the robot's shift; None: it is not."""
-    until = float(problem.timed_rules.over_by[i])
+    until = float(problem.model.over_by[i])
     if math.isinf(end) or end <= until * (1 + ROUNDING):
         return None
     back, over = moments(problem, end, until)

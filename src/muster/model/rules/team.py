@@ -12,7 +12,7 @@ import numpy as np
 from muster.mission.model import Robot, Task, TeamPart
 from muster.mission.texts.near_matches import did_you_mean
 from muster.model.bottleneck import fills, matched, on_some_matching
-from muster.model.plan_model import ability
+from muster.model.parts import Parts
 from muster.model.rules.rule import ROUNDING, Bools, Change, InPlan, Limits, Outlook, Question, Rule, listed
 
 _MOST_NAMED, _MOST_ADDED = 4, 10
@@ -47,42 +47,40 @@ class Team(Rule):
     key = "team"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        first = next(filter(problem.timed_rules.is_for_team, range(len(problem.tasks))), None)
+        first = next(filter(problem.model.is_for_team, range(len(problem.tasks))), None)
         if first is None:
             return {"team": None}
         task = problem.tasks[first]
         return {"team": f"task {task.id}: {'needs' if task.needs else 'team' if task.team else 'robots_needed'}"}
 
-    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        rules, none = problem.timed_rules, np.empty(0)
-        if not rules.with_teams:
-            return {"parts": [], "abilities": none, "needs": none}
-        first_of_kind = np.unique(problem.kinds, return_index=True)[1]
-        tasks = range(len(problem.tasks))
-        parts = [
-            [(count, fits[first_of_kind].tolist()) for count, fits in rules.parts(j)] if rules.has_parts(j) else []
-            for j in tasks
-        ]
-        names = sorted({name for j in tasks for name in rules.needed(j)})
-        return {
-            "parts": parts,
-            "abilities": np.array([[ability(robot, name) for name in names] for robot in problem.robots]),
-            "needs": np.array([[rules.needed(j).get(name, 0.0) for name in names] for j in tasks]),
-        }
+    def compile(self, problem: Question, parts: Parts) -> None:
+        everybody = np.ones(len(problem.robots), np.bool_)
+        skills = problem.holds("skill")
+        for j, task in enumerate(problem.tasks):
+            if not task.is_for_team:
+                continue
+            for name, needed in (task.needs or {}).items():
+                parts.sum_up(j, name, needed, np.array([_ability(robot, name) for robot in problem.robots]))
+            if task.team:
+                parts.seat(
+                    j, [(p.count, np.array([p.fits(r, skills=skills) for r in problem.robots])) for p in task.team]
+                )
+            elif not task.needs:
+                parts.seat(j, [(task.robots_needed or 1, everybody)])
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
-        return problem.timed_rules.in_team(i)
+        return problem.model.in_team(i)
 
     def kinds(self, problem: Question) -> Sequence[Hashable] | None:
-        if not problem.timed_rules.with_teams:
+        if not problem.model.with_teams:
             return None
-        return [problem.timed_rules.in_team(i) for i in range(len(problem.robots))]
+        return [problem.model.in_team(i) for i in range(len(problem.robots))]
 
     def refusal(self, problem: Question, i: int, j: int) -> str | None:
-        rules = problem.timed_rules
-        if not rules.is_for_team(j) or rules.needs(j):
+        rules = problem.model
+        if not rules.is_for_team(j) or rules.sums(j):
             return None
-        if any(fits[i] for _, fits in rules.parts(j)):
+        if any(fits[i] for _, fits in rules.seats(j)):
             return None
         return f"fits no part of the team: {needed(problem.tasks[j])}"
 
@@ -96,14 +94,14 @@ class Team(Rule):
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         refused = self.refusal(problem, i, j)
-        if refused or not problem.timed_rules.is_for_team(j):
+        if refused or not problem.model.is_for_team(j):
             return refused
         return shortfall(problem, i, j, outlook.limits.alone[:, j])
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         problem = plan.problem
         refused = self.refusal(problem, i, j)
-        if refused or not problem.timed_rules.is_for_team(j):
+        if refused or not problem.model.is_for_team(j):
             return refused
         allowed = np.array([problem.may(k, j) for k in range(len(problem.robots))], dtype=np.bool_)
         return shortfall(problem, i, j, allowed) or plan.kept_out(self.word, i, j)
@@ -111,25 +109,22 @@ class Team(Rule):
 
 def in_some_team(problem: Question, j: int, able: Bools) -> Bools:
     """(m,) which of the robots that are able are in some team for a task."""
-    rules = problem.timed_rules
-    if rules.needs(j):
-        enough = all(abilities[able].sum() >= needed * (1 - ROUNDING) for needed, abilities in rules.needs(j))
+    rules = problem.model
+    if rules.sums(j):
+        enough = all(abilities[able].sum() >= needed * (1 - ROUNDING) for needed, abilities in rules.sums(j).values())
         return able if enough else np.zeros_like(able)
     return np.asarray(on_some_matching(_places(problem, j, able)).any(axis=0))
 
 
 def shortfall(problem: Question, i: int, j: int, able: Bools) -> str | None:
     """Why the robots that are able are no team for a task with robot i in it; None: they are enough."""
-    rules = problem.timed_rules
+    rules = problem.model
     if not rules.is_for_team(j) or in_some_team(problem, j, able)[i]:
         return None
     names = [problem.robots[k].id for k in np.flatnonzero(able)]
     wanted = f"needs {needed(problem.tasks[j])}"
-    if rules.needs(j):
-        task = problem.tasks[j]
-        sums = ", ".join(
-            f"{name} {float(a[able].sum()):g}" for name, (_, a) in zip(task.needs or {}, rules.needs(j), strict=True)
-        )
+    if rules.sums(j):
+        sums = ", ".join(f"{name} {float(who[able].sum()):g}" for name, (_, who) in rules.sums(j).items())
         return f"{wanted}; all who can be there have {sums} together{_like_others(problem, j)}"
     if not fills(_places(problem, j, able)):
         return f"{wanted}; {_who(names)}"
@@ -169,13 +164,13 @@ def _who(names: Sequence[str]) -> str:
 
 def _places(problem: Question, j: int, able: Bools) -> Bools:
     """(places, m) which robots fit where."""
-    rows = [fits & able for count, fits in problem.timed_rules.parts(j) for _ in range(count)]
+    rows = [fits & able for count, fits in problem.model.seats(j) for _ in range(count)]
     return np.array(rows, dtype=np.bool_)
 
 
 def missing_robots(problem: Question, i: int, j: int, names: set[str]) -> MoreRobots | None:
     """Robots that a team of a task with robot i in it lacks; None: none, or no such robot can be made up."""
-    rules, task, robot = problem.timed_rules, problem.tasks[j], problem.robots[i]
+    rules, task, robot = problem.model, problem.tasks[j], problem.robots[i]
     able = np.array([problem.may(k, j) for k in range(len(problem.robots))], dtype=np.bool_)
     if not rules.is_for_team(j) or not able[i] or in_some_team(problem, j, able)[i]:
         return None
@@ -194,7 +189,7 @@ def missing_robots(problem: Question, i: int, j: int, names: set[str]) -> MoreRo
 def _as_able(problem: Question, i: int, j: int, able: Bools, names: set[str]) -> MoreRobots | None:
     """As many robots like robot i as make up for the abilities that are lacking, if it has all of these."""
     count = 0
-    for needed_, abilities in problem.timed_rules.needs(j):
+    for needed_, abilities in problem.model.sums(j).values():
         lacking = needed_ - float(abilities[able].sum())
         if lacking > needed_ * ROUNDING and abilities[i] <= 0:
             return None
@@ -227,3 +222,8 @@ def _new_name(names: set[str], k: int) -> str:
         number += 1
     names.add(f"more_{number}")
     return f"more_{number}"
+
+
+def _ability(robot: Robot, name: str) -> float:
+    """How much of an ability a robot has."""
+    return float((robot.abilities or {}).get(name, 0.0))

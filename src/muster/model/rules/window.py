@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from muster.mission.model import Robot, Task
+from muster.model.parts import Parts
 from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Rule, first_task, listed
 from muster.model.rules.times import known_least, longer, moments, reaches, span
 
@@ -56,11 +57,12 @@ class Window(Rule):
     key = "window"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        return {"window": first_task(problem, "window_s", lambda j: problem.timed_rules.openings[j])}
+        return {"window": first_task(problem, "window_s", lambda j: problem.model.openings[j])}
 
-    def core_arrays(self, problem: Question) -> Mapping[str, Any]:
-        windows = problem.timed_rules.openings
-        return {"openings": windows if any(windows) else []}
+    def compile(self, problem: Question, parts: Parts) -> None:
+        for j, task in enumerate(problem.tasks):
+            if task.window_s:
+                parts.opens(j, task.window_s)
 
     def possible(self, limits: Limits) -> Bools | None:
         return np.isfinite(limits.pair_begin) if limits.is_timed else None
@@ -75,7 +77,7 @@ class Window(Rule):
 
 def closed(problem: Question, j: int, how: str, ready: float) -> str | None:
     """That all windows of a task are closed by a time; None: one is not."""
-    windows = problem.timed_rules.openings[j]
+    windows = problem.model.openings[j]
     if not windows or ready <= windows[-1][1]:
         return None
     at, closes = moments(problem, ready, windows[-1][1])
@@ -87,9 +89,9 @@ def _waits_too_long(limits: Limits, i: int, j: int) -> str | None:
     problem = limits.problem
     if closed(problem, j, *reaches(limits, i, j)) is None:
         return None
-    free = limits.without_windows(j)
+    free = limits.without(Window.word, j)
     late = None if free is None else closed(problem, j, *reaches(free, i, j))
-    windows = problem.timed_rules.openings[j]
+    windows = problem.model.openings[j]
     (closes,) = moments(problem, windows[-1][1])
     return late or f"what it waits for is too late for its {_which(windows)}, which closes at {closes}"
 
@@ -100,9 +102,9 @@ def _which(windows: Sequence[tuple[float, float]]) -> str:
 
 def _never_together(problem: Question, j: int) -> str:
     """That tasks which begin together have no window in common from when they are ready."""
-    unit = problem.timed_rules.units[problem.timed_rules.unit[j]]
+    unit = problem.model.units[problem.model.unit[j]]
     names = listed([problem.tasks[k].id for k in unit if k != j])
-    windows = listed([_windows(problem, k) for k in unit if problem.timed_rules.openings[k]])
+    windows = listed([_windows(problem, k) for k in unit if problem.model.openings[k]])
     return f"begins together with {names}, and from when all are ready no window is open to all: {windows}"
 
 
@@ -110,6 +112,6 @@ def _windows(problem: Question, j: int) -> str:
     """When a task may begin."""
     said = (
         f"from {moments(problem, opens)[0]}" + (f" to {moments(problem, closes)[0]}" if math.isfinite(closes) else "")
-        for opens, closes in problem.timed_rules.openings[j]
+        for opens, closes in problem.model.openings[j]
     )
     return f"{problem.tasks[j].id} {' or '.join(said)}"

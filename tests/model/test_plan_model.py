@@ -1,10 +1,9 @@
-"""The rules of time, teams and relations as arrays, and what is left of them where they are ignored."""
+"""What rules come to as primitives, and what is left of that where they are ignored."""
 
 import math
 
 from muster import Mission, Robot, Task
 from muster.mission.model import Lag, TeamPart
-from muster.model.plan_model import TimedRules
 from muster.model.problem import Problem
 
 MISSION = Mission(
@@ -23,39 +22,39 @@ MISSION = Mission(
 )
 
 
-def rules(*ignored):
-    return TimedRules(Problem.compile(MISSION, ignored=ignored))
+def model(*ignored):
+    return Problem.compile(MISSION, ignored=ignored).model
 
 
 def test_times():
-    some = rules()
+    some = model()
     assert some.openings == [[(1, 2), (5, math.inf)], [], [], [], []]
     assert (some.ends_by[0], some.due[0], some.over_by.tolist()) == (9, 4, [90, math.inf, math.inf])
     assert some.gaps(1) == [(0, 2, math.inf)]
-    assert some.problem.has_timed_rules
+    assert Problem.compile(MISSION).has_timed_rules
 
 
 def test_teams():
-    some = rules()
+    some = model()
     assert [some.is_for_team(j) for j in range(5)] == [False, True, True, True, False]
     assert [some.least_members(j) for j in range(5)] == [1, 2, 3, 2, 1]
-    assert [(count, fits.tolist()) for count, fits in some.parts(2)] == [(2, [True] * 3), (1, [False, True, False])]
-    assert [(least, able.tolist()) for least, able in some.needs(3)] == [(4, [3, 2, 0])]
+    assert [(count, fits.tolist()) for count, fits in some.seats(2)] == [(2, [True] * 3), (1, [False, True, False])]
+    assert {name: (least, able.tolist()) for name, (least, able) in some.sums(3).items()} == {"lift": (4, [3, 2, 0])}
 
 
 def test_relations():
-    some = rules()
+    some = model()
     assert some.units == [[0], [1], [2, 3], [4]]
     assert some.unit == [0, 1, 2, 2, 3]
     assert (some.same_crew, some.apart) == ([[], [4], [], [], [1]], [[3], [], [], [0], []])
 
 
 def test_what_is_ignored_does_not_bind():
-    assert not any(rules("window").openings)
-    assert rules("deadline").ends_by[0] == rules("shift").over_by[0] == math.inf
-    assert rules("deadline").due[0] == 4
-    assert [rules("team").least_members(j) for j in range(5)] == [1] * 5
-    assert len(rules("relation").units) == 5
-    assert rules("prerequisite").gaps(1) == []
+    assert not any(model("window").openings)
+    assert model("deadline").ends_by[0] == model("shift").over_by[0] == math.inf
+    assert model("deadline").due[0] == 4
+    assert [model("team").least_members(j) for j in range(5)] == [1] * 5
+    assert len(model("relation").units) == 5
+    assert model("prerequisite").gaps(1) == []
     words = ("window", "deadline", "shift", "team", "relation", "prerequisite")
     assert not Problem.compile(MISSION, ignored=words).has_timed_rules

@@ -1,0 +1,161 @@
+"""The primitives of a plan model, as the rules of a mission contribute them, each for itself.
+
+Tasks (n) and robots (m) are numbered as in the problem. What two rules say of one thing holds together: the later end
+gives way to the earlier one, and of two domains what is in both is left.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from muster.mission.values.arrays import Bools, Floats
+
+Openings = list[tuple[float, float]]
+"""When something may begin: spans from, until, seconds, sorted and apart."""
+
+NEVER: Openings = [(math.inf, math.inf)]
+"""No span at all would say that it may begin at any time."""
+
+Seats = list[tuple[int, Bools]]
+"""How many robots of which: a count, and (m,) who is fit."""
+
+Gap = tuple[int, float, float]
+"""The task before, and the least and the most time between its end and the begin of the one after, seconds."""
+
+
+@dataclass(frozen=True, eq=False)
+class Meter:
+    """A quantity on board of robots along their routes, between 0 and the most that each has room for.
+
+    Parameters
+    ----------
+    name
+        for people.
+    change
+        (n,) what a task adds.
+    most
+        (m,) the room of each robot; inf: without an end.
+    at_start
+        (m,) what is on board at first.
+    pending
+        (n,) what of the change another task takes off again, below 0 where the task is that one: stations leave it on
+        board.
+    pending_at_start
+        (m,) what of the load at first tasks deliver.
+    """
+
+    name: str
+    change: Floats
+    most: Floats
+    at_start: Floats
+    pending: Floats
+    pending_at_start: Floats
+
+    @classmethod
+    def count(cls, name: str, change: Sequence[float], most: Sequence[float]) -> Meter:
+        """A quantity that only grows: what tasks add stays, and stations take nothing off."""
+        grows, none = np.array(change, dtype=np.float64), np.zeros(len(most))
+        return cls(name, grows, np.array(most, dtype=np.float64), none, grows, none)
+
+
+@dataclass(eq=False)
+class Parts:
+    """What rules have contributed so far, to a model of so many robots and tasks."""
+
+    robots: int
+    tasks: int
+    openings: dict[int, Openings] = field(default_factory=dict)
+    ends_by: dict[int, float] = field(default_factory=dict)
+    over_by: dict[int, float] = field(default_factory=dict)
+    gaps: dict[int, dict[int, tuple[float, float]]] = field(default_factory=dict)
+    together: list[tuple[int, int]] = field(default_factory=list)
+    same_crew: dict[int, set[int]] = field(default_factory=dict)
+    apart: dict[int, set[int]] = field(default_factory=dict)
+    seats: dict[int, Seats] = field(default_factory=dict)
+    sums: dict[int, dict[str, tuple[float, Floats]]] = field(default_factory=dict)
+    taken_on_by: dict[int, int] = field(default_factory=dict)
+    capacity: dict[int, float] = field(default_factory=dict)
+    least_stops: dict[int, int] = field(default_factory=dict)
+    meters: list[Meter] = field(default_factory=list)
+    energy: dict[int, tuple[float, float]] = field(default_factory=dict)
+    free: set[int] = field(default_factory=set)  # robots, or tasks, that the rule which contributes now does not bind
+
+    def opens(self, j: int, spans: Iterable[tuple[float, float | None]]) -> None:
+        """Task j begins in one of these spans."""
+        if j in self.free:
+            return
+        own = sorted((opens, math.inf if closes is None else closes) for opens, closes in spans)
+        self.openings[j] = _common(self.openings[j], own) if j in self.openings else own
+
+    def ends(self, j: int, latest_s: float) -> None:
+        """Task j ends by a time."""
+        if j in self.free:
+            return
+        self.ends_by[j] = min(latest_s, self.ends_by.get(j, math.inf))
+
+    def is_over(self, i: int, latest_s: float) -> None:
+        """The route of robot i, its way to the end included, is over by a time."""
+        if i in self.free:
+            return
+        self.over_by[i] = min(latest_s, self.over_by.get(i, math.inf))
+
+    def follows(self, j: int, before: int, least_s: float = 0.0, most_s: float = math.inf) -> None:
+        """Task j is done only if the one before it is, and begins so long after that ends, at least and at most."""
+        least, most = self.gaps.setdefault(j, {}).get(before, (0.0, math.inf))
+        self.gaps[j][before] = max(least, least_s), min(most, most_s)
+
+    def begin_together(self, j: int, k: int) -> None:
+        """Both tasks are done by different robots, beginning at one moment, or neither is."""
+        self.together.append((j, k))
+
+    def by_one_crew(self, j: int, k: int) -> None:
+        """The same robots do both, if both are done."""
+        _both(self.same_crew, j, k)
+
+    def by_others(self, j: int, k: int) -> None:
+        """No robot does both."""
+        _both(self.apart, j, k)
+
+    def seat(self, j: int, seats: Seats) -> None:
+        """So many robots of each sort do task j, at once."""
+        self.seats[j] = seats
+
+    def sum_up(self, j: int, name: str, needed: float, able: Floats) -> None:
+        """What the robots that do task j are able to do, (m,), sums up to at least so much."""
+        self.sums.setdefault(j, {})[name] = needed, able
+
+    def deliver(self, j: int, pickup: int) -> None:
+        """One robot does both, the pickup first, and neither is done alone."""
+        self.taken_on_by[j] = pickup
+        self.follows(j, pickup)
+
+    def uses(self, i: int, most: float) -> None:
+        """The usage of robot i is at most so much."""
+        self.capacity[i] = min(most, self.capacity.get(i, math.inf))
+
+    def stops(self, i: int, least: int) -> None:
+        """Robot i does no task, or at least so many."""
+        self.least_stops[i] = max(least, self.least_stops.get(i, 0))
+
+    def meter(self, meter: Meter) -> None:
+        """A quantity stays between 0 and the robot's room for it."""
+        self.meters.append(meter)
+
+    def has_energy(self, i: int, room: float, at_start: float) -> None:
+        """Robot i has energy for so much usage at most, and at first; stations give it more."""
+        self.energy[i] = room, at_start
+
+
+def _both(tied: dict[int, set[int]], j: int, k: int) -> None:
+    tied.setdefault(j, set()).add(k)
+    tied.setdefault(k, set()).add(j)
+
+
+def _common(some: Openings, others: Openings) -> Openings:
+    """What is in both."""
+    pairs = ((max(a, c), min(b, d)) for a, b in some for c, d in others)
+    return sorted((opens, closes) for opens, closes in pairs if opens <= closes) or NEVER
