@@ -3,13 +3,13 @@
 import math
 
 import pytest
+from tests.timed_missions.missions import OBJECTIVES, timed_mission
 
 import muster
 from muster import core
 from muster.allocation.algorithms import greedy, timed_greedy
 from muster.allocation.working_roster import WorkingRoster
 from muster.model.problem import Problem
-from tests.timed_missions.missions import OBJECTIVES, timed_mission
 
 
 class Reference:

@@ -35,7 +35,9 @@ class Logistics(Checked):
 
     robots: int = spec(Whole(minimum=1, maximum=MOST_ROBOTS), "how many robots", default=6)
     tasks: int = spec(Whole(minimum=1, maximum=MOST_TASKS), "how many tasks", default=60)
-    transports: float = spec(Number(minimum=0, maximum=1), "share of jobs that are a pickup and a delivery", default=0.4)
+    transports: float = spec(
+        Number(minimum=0, maximum=1), "share of jobs that are a pickup and a delivery", default=0.4
+    )
     teams: float = spec(Number(minimum=0, maximum=1), "share of jobs that need two robots at once", default=0.1)
     ordered: float = spec(Number(minimum=0, maximum=1), "share of jobs that wait for a job before them", default=0.2)
     windows: float = spec(Number(minimum=0, maximum=1), "share of the other jobs with a time window", default=0.3)
@@ -90,9 +92,7 @@ def _job(given: Logistics, site: _Site, draw: Random, number: int, lasts: list[s
     if not carries:
         return [task]
     there = (min(site.side_m, max(0.0, x + draw.uniform(-1, 1) * _LONGEST_TRANSPORT_M)) for x in place)
-    delivery = Task(
-        id=f"t{number + 1}", position=rounded(*there), duration_s=draw.randint(*_WORK_S), delivers=first
-    )
+    delivery = Task(id=f"t{number + 1}", position=rounded(*there), duration_s=draw.randint(*_WORK_S), delivers=first)
     return [task, delivery]
 
 

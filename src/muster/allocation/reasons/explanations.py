@@ -14,7 +14,6 @@ from muster.mission.plan import Reason, Unassigned
 from muster.model.problem import Problem
 from muster.model.rules import InPlan
 
-
 _MOST_EFFORT = 1e6  # of the reasons that come with a plan, as `TimedPlaces.effort` measures it: seconds
 
 

@@ -72,7 +72,7 @@ class TimedPlaces(TimedTeams):
 
     def _places_at_most(self, gaps: int, whole: Sequence[int]) -> int:
         """How many places of inseparable tasks are looked at, of a robot whose route has so many gaps."""
-        rules = self.problem.timed_rules
+        rules = self.problem.model
         if any(rules.is_for_team(k) or rules.beginning_with(k) for k in whole) or len(whole) > 2:
             return _MOST_PLACES if len(whole) == 1 else _MOST_OF_WHOLE
         return gaps if len(whole) == 1 else gaps * (gaps + 1) // 2

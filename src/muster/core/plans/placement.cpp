@@ -21,6 +21,7 @@ Placement::Placement(Roster& roster)
       relations_(roster),
       ranges_(problem_.robots()),
       choice_(problem_),
+      near_(problem_.units(), 0),
       busy_(problem_.robots(), 0) {}
 
 const UnitInsertion* Placement::best(int unit, const Trial& trial) {

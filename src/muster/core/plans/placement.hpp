@@ -174,8 +174,9 @@ class Placement {
   TeamChoice choice_;
   Rows teams_;
   std::vector<Cut> cuts_;
-  bool skips_cuts_ = false;  // whether some cuts alone are tried
-  std::vector<int> near_;    // units behind which they are
+  bool skips_cuts_ = false;      // whether some cuts alone are tried
+  std::vector<int> near_units_;  // behind which they are
+  std::vector<char> near_;       // by unit, the same while cuts are gathered
   std::vector<double> keys_, works_;
   std::vector<int> candidates_, at_, robots_;
   std::vector<int> candidate_of_;  // by robot; -1: it is none

@@ -9,7 +9,8 @@ namespace muster {
 
 namespace {
 
-constexpr double kFirstKey = 0.5;  // how often an algorithm with random numbers takes the first
+constexpr std::size_t kPassedAtOnce = 4;  // robots that are looked at in the time in which a unit is passed
+constexpr double kFirstKey = 0.5;         // how often an algorithm with random numbers takes the first
 
 }  // namespace
 
@@ -83,31 +84,36 @@ void Placement::try_key(int unit, int key, std::size_t first) {
 // The cuts between what comes before the unit and what comes after it, in order: all, or some of many.
 void Placement::gather_cuts(int unit) {
   cuts_.assign(1, {labels_.low, -1, true});
-  skips_cuts_ = trial_->append_only || seek_near(unit);
+  skips_cuts_ = trial_->append_only;
   if (trial_->append_only) return;  // behind all that may come before the unit
-  const auto add = [&](int other) {
+  const bool some = seek_near(unit);
+  // To pass many cuts one by one takes longer than to look at each robot at some.
+  skips_cuts_ = some && near_units_.size() * candidates_.size() < kPassedAtOnce * near_.size();
+  const auto add = [&](int other, bool tried) {
     const double label = timeline_.label_of(other);
-    if (timeline_.present(other) && label > labels_.low && label < labels_.high) cuts_.push_back({label, other, true});
+    if (timeline_.present(other) && label > labels_.low && label < labels_.high) cuts_.push_back({label, other, tried});
   };
   if (skips_cuts_) {
-    for (const int other : near_) add(other);
+    for (const int other : near_units_) add(other, true);
   } else {
-    for (int other = 0; other < problem_.units(); ++other) add(other);
+    for (const int other : near_units_) near_[other] = 1;
+    for (int other = 0; other < problem_.units(); ++other) add(other, !some || near_[other]);
+    for (const int other : near_units_) near_[other] = 0;
   }
   std::ranges::sort(cuts_, {}, &Cut::label);
   for (std::size_t k = 1; k < cuts_.size(); ++k) {  // there is no cut between units of one label
-    if (cuts_[k - 1].label == cuts_[k].label) cuts_[k - 1].tried = false;
+    if (cuts_[k - 1].label == cuts_[k].label) cuts_[k].tried |= std::exchange(cuts_[k - 1].tried, false);
   }
 }
 
 // Finds the units behind and before those near ones, and the last of each route. False: all cuts are few enough.
 bool Placement::seek_near(int unit) {
+  near_units_.clear();
   long count = 0;
   for (const int robot : candidates_) count += timeline_.tasks_in(robot);
   if (trial_->most_places == 0 || count <= 4 * trial_->most_places) return false;
-  near_.clear();
   const auto mark = [&](const Visit& visit) {
-    if (visit.unit >= 0) near_.push_back(visit.unit);
+    if (visit.unit >= 0) near_units_.push_back(visit.unit);
   };
   for (const int task : problem_.tasks_of_unit(unit)) {
     int tried = 0;

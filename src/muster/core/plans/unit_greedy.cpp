@@ -58,7 +58,8 @@ bool UnitGreedy::is_plain(int unit) const {
     const auto tasks = problem_.tasks_of_unit(each);
     return tasks.size() == 1 && problem_.parts(tasks[0]).empty() && problem_.same_crew(tasks[0]).empty() &&
            problem_.apart(tasks[0]).empty() &&
-           (problem_.abilities() == 0 || std::ranges::all_of(problem_.needs(tasks[0]), [](double n) { return n == 0.0; }));
+           (problem_.abilities() == 0 ||
+            std::ranges::all_of(problem_.needs(tasks[0]), [](double n) { return n == 0.0; }));
   };
   const auto whole = problem_.inseparable(unit);
   return !problem_.any_may_run_short() && !problem_.has_gap_most() && whole.size() <= 2 && is_free(unit) &&
@@ -211,8 +212,8 @@ void UnitGreedy::add_empty_twins() {
 void UnitGreedy::evaluate_changed_units() {
   for (const int unit : ready_) {
     const Kept& kept = kept_[unit];
-    const bool anew = all_changed_ || !plain_[unit] || depends_on_changes(unit) ||
-                      (kept.found && uses_changed_robot(kept.insertion));
+    const bool anew =
+        all_changed_ || !plain_[unit] || depends_on_changes(unit) || (kept.found && uses_changed_robot(kept.insertion));
     if (anew) {
       evaluate(unit, true);
     } else {

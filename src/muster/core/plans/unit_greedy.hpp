@@ -10,8 +10,8 @@
 
 namespace muster {
 
-// Each step appends the unit whose team has the least debit: what its members pay together, and the greatest usage among
-// them (3.17); with the objectives `makespan` and `lateness`, what the objective grows by.
+// Each step appends the unit whose team has the least debit: what its members pay together, and the greatest usage
+// among them (3.17); with the objectives `makespan` and `lateness`, what the objective grows by.
 //
 // What a unit costs is kept from step to step. A `thorough` allocation evaluates every unit again whose cost a step may
 // have changed, so that it chooses as if all were evaluated at each step. Else a step evaluates what is near the tasks
