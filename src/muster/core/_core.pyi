@@ -411,6 +411,19 @@ class Roster:
     def stops(self) -> list[list[tuple[int, float, float, float]]]:
         """By robot: task, arrival, begin and end of each stop."""
 
+class UnitGreedy:
+    """
+    Greedy allocation of units of work, each to the ends of the routes where its debit is least.
+    """
+
+    def __init__(self, roster: Roster, robots: Sequence[int], thorough: bool) -> None:
+        """
+        `thorough`: choose as if every unit were evaluated at each step; else mainly those near what was placed.
+        """
+
+    def append_one(self) -> bool:
+        """Put the unit of the least debit into routes; False: none fits."""
+
 class ScheduleSearch:
     """
     Ruin and recreate under simulated annealing (SISR), where tasks are bound to times, teams and relations. One thread at a time may use one.

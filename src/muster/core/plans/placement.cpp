@@ -117,7 +117,7 @@ void Placement::try_alone(int task) {
     ranges_[robot] = places(robot);
     count += std::max(0, ranges_[robot].second - ranges_[robot].first + 1);
   }
-  if (trial_->most_places > 0 && count > 2 * trial_->most_places) return try_near(task);
+  if (trial_->most_places > 0 && !trial_->append_only && count > 2 * trial_->most_places) return try_near(task);
   for (const int robot : robots) {
     if (!usable_alone(robot)) continue;
     for (int at = ranges_[robot].first; at <= ranges_[robot].second; ++at) try_place(robot, task, at);

@@ -263,6 +263,8 @@ class Problem {
   }
   // Whether the way from a task to another costs what the way back does, for every robot.
   bool is_symmetric() const { return symmetric_; }
+  // Whether a way through another task is never shorter, nor quicker: ways are straight and tasks end where they begin.
+  bool detours_cost() const { return symmetric_ && steady_ && !given_table_; }
   // The first robot that differs from this one in nothing: of those without tasks one stands for all.
   int twin(int robot) const { return twins_[robot]; }
   // Whether two robots may do the same tasks, and one way costs both the same.
