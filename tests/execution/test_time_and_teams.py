@@ -295,3 +295,62 @@ def test_a_team_that_breaks_takes_no_other_task_from_its_robot():
         (revision,) = executor.revisions
         assert "lift" in revision.forced
         assert ("watch" not in revision.moved) == stays
+
+
+def times_of(executor, kind, robot="r_0"):
+    return [e.time_s for e in executor.events if e.kind == kind and e.data.get("robot") == robot]
+
+
+def test_a_robot_neither_drives_nor_works_into_a_break():
+    """10 s of work do not fit before the first break, nor 8 m of way before the second."""
+    shifts = ((0.0, 9.0), (14.0, 30.0), (40.0, None))
+    mission = mission_of(task("a"), task("b", 9.0), robots=1, shifts_s=shifts)
+    executor = carried_out(mission, plan_of(r_0=["a", "b"]), replan=keeping)
+    assert report_of(executor.account).starts_s == {"a": pytest.approx(14, abs=NEAR), "b": pytest.approx(48, abs=NEAR)}
+    assert times_of(executor, "sets_out") == [0, pytest.approx(40, abs=NEAR)]
+    assert words_of(executor) == {("r_0", "waits for shift: r_0 works from 14 s on")}
+
+
+def test_a_team_begins_when_each_of_it_works_through():
+    mission = mission_of(task("a", robots_needed=2))
+    resting = replace(mission.robots[1], shifts_s=((0.0, 5.0), (20.0, None)))
+    mission = replace(mission, robots=(mission.robots[0], resting))
+    executor = carried_out(mission, plan_of(r_0=["a"], r_1=["a"]), replan=keeping)
+    assert report_of(executor.account).starts_s["a"] == pytest.approx(20, abs=NEAR)
+    assert ("r_0", "waits for shift: r_1 works from 20 s on") in words_of(executor)
+
+
+def test_a_robot_goes_home_after_its_break():
+    mission = mission_of(task("a", 8.0), robots=1, shifts_s=((0.0, 20.0), (30.0, 60.0)), return_to_start=True)
+    executor = carried_out(mission, plan_of(r_0=["a"]), replan=keeping)
+    assert times_of(executor, "returns") == [pytest.approx(30, abs=NEAR)]
+
+
+def test_a_robot_leaves_late_for_a_short_duty():
+    mission = mission_of(task("a", window_s=((50.0, 60.0),)), robots=1, longest_duty_s=20.0, return_to_start=True)
+    executor = carried_out(mission, plan_of(r_0=["a"]), replan=keeping)
+    (leaves,), (back,) = times_of(executor, "sets_out"), times_of(executor, "robot_at_end")
+    assert 40 < leaves < 50 < back <= leaves + 20
+
+
+def test_what_would_make_a_duty_too_long_is_not_begun():
+    delay = Event(at_s=5, delay_task=DelayedTask(task="a", by_s=12))
+    mission = mission_of(task("a"), task("b", 2.0), robots=1, longest_duty_s=30.0, events=[delay])
+    executor = carried_out(mission, plan_of(r_0=["a", "b"]), replan=keeping)
+    assert report_of(executor.account).tasks_done == ("a",)
+    refused = [e.data["reason"] for e in executor.events if e.kind == "task_refused"]
+    assert [reason.split(":")[0] for reason in refused] == ["duty"]
+
+
+def test_a_robot_that_has_left_has_what_is_left_of_its_duty():
+    mission = mission_of(task("a"), task("b", 2.0), robots=1, longest_duty_s=100.0)
+    rests = []
+
+    def kept(rest):
+        rests.append(rest)
+        return keeping(rest)
+
+    late = replace(mission, events=(Event(at_s=5, new_task=task("c", 3.0)),))
+    carried_out(late, plan_of(r_0=["a", "b"]), replan=kept)
+    (snapshot,) = rests[-1].crew
+    assert snapshot.over_by_s == pytest.approx(100, abs=NEAR)

@@ -35,8 +35,8 @@ _KEYS: Mapping[str, tuple[str, ...]] = {
     "load": ("load", "delivers", "load_capacity", "load_at_start"),
     "battery": ("battery",),
 }
-"""By rule the keys of tasks and robots that are as by default where it does not hold."""
-T = TypeVar("T", "Task", "Robot")
+"""By rule the keys of tasks and robots that are as by default where it does not hold, beside those that name it."""
+T = TypeVar("T", Task, Robot)
 
 
 def ignorable_rule(word: object) -> str | None:
@@ -69,5 +69,6 @@ def ignored_rules(words: str | Collection[str]) -> tuple[str, ...]:
 def as_it_holds(item: T, ignored: Collection[str]) -> T:
     """A task or robot without the rules that do not hold about times, teams, goods and energy."""
     keys = {key for rule in ignored for key in _KEYS.get(rule, ())}
-    without = {f.name: {} if f.default is MISSING else f.default for f in fields(item) if f.name in keys}
+    off = [f for f in fields(item) if f.name in keys or f.metadata.get("rule") in ignored]
+    without = {f.name: {} if f.default is MISSING else f.default for f in off}
     return replace(item, **without) if without else item

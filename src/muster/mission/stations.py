@@ -60,7 +60,7 @@ class Station(Checked):
         "ids of the only robots that may call there",
         default=None,
         rule="lock",
-        planned=False,
+        carried_out=False,
     )
 
     @property

@@ -1,10 +1,10 @@
-"""Refuses features that this version can neither plan nor judge yet, and rules that it can judge alone."""
+"""Refuses features that this version can neither plan nor judge yet, and rules that it can judge or plan alone."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
-from itertools import chain
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain, product
 
 from muster.mission.errors import NotSupportedError
 from muster.mission.goods import by_commodity
@@ -27,7 +27,19 @@ def require_supported(mission: Mission) -> None:
     NotSupportedError
         for rules that only the judge knows yet, and for all that `require_judged` refuses.
     """
-    _refuse(mission, chain(_unsupported(mission), _not_planned(mission)))
+    _refuse(mission, chain(_unsupported(mission), _unknown(mission, {"planned": "planning"})))
+
+
+def require_carried_out(mission: Mission) -> None:
+    """Refuse a mission that asks for more than this version can carry out.
+
+    Raises
+    ------
+    NotSupportedError
+        for rules that runs do not know yet, and for all that `require_supported` refuses.
+    """
+    require_supported(mission)
+    _refuse(mission, _unknown(mission, {"carried_out": "carrying out"}))
 
 
 def require_judged(mission: Mission) -> None:
@@ -48,13 +60,15 @@ def _refuse(mission: Mission, faults: Iterable[Fault]) -> None:
         raise NotSupportedError(found)
 
 
-def _not_planned(mission: Mission) -> Iterator[Fault]:
+def _unknown(mission: Mission, to: Mapping[str, str]) -> Iterator[Fault]:
+    """Rules that a part of this version does not know, by the word for that in the keys, and its name."""
     stations = ((("stations", k), station) for k, station in enumerate(mission.stations))
     records: Iterable[tuple[Path, object]] = chain(all_robots(mission), all_work(mission), stations)
     for path, one in records:
-        for f in (f for f in stated_rules(one) if not f.metadata.get("planned", True)):
-            expected = "nothing here yet: planning does not know this rule, only muster verify does"
-            yield Fault((*path, f.name), shown(plain(getattr(one, f.name))), expected)
+        for f, (word, name) in product(stated_rules(one), to.items()):
+            if not f.metadata.get(word, True):
+                expected = f"nothing here yet: {name} does not know this rule"
+                yield Fault((*path, f.name), shown(plain(getattr(one, f.name))), expected)
 
 
 def _unsupported(mission: Mission) -> Iterator[Fault]:

@@ -183,7 +183,7 @@ class Work(Checked):
         default=(),
         if_used=True,
         rule="either-or",
-        planned=False,
+        carried_out=False,
     )
     load: Amount | None = spec(
         Amounts(), "what it takes on board, or by commodity; below 0: puts down", default=None, if_used=True
@@ -197,7 +197,7 @@ class Work(Checked):
         default=None,
         if_used=True,
         rule="aboard",
-        planned=False,
+        carried_out=False,
     )
     duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
     priority: float = spec(Number(above=0), "weight among the tasks completed", default=1.0)
