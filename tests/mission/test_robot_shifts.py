@@ -11,7 +11,7 @@ THREE = Robot(id="r", position=(0, 0), shifts_s=((0, 10), (20, 30), (40, None)))
 
 @pytest.mark.parametrize(
     ("now", "seconds", "begins"),
-    [(0, 10, 0), (1, 10, 40), (1, 9, 1), (12, 5, 20), (28, 2, 28), (29, 2, 40), (99, 50, 99)],
+    [(0, 10, 0), (1, 10, 20), (1, 11, 40), (1, 9, 1), (12, 5, 20), (28, 2, 28), (29, 2, 40), (99, 50, 99)],
 )
 def test_a_robot_sets_out_where_a_shift_lasts(now, seconds, begins):
     assert THREE.set_out(now, seconds) == begins
