@@ -5,15 +5,22 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from muster.mission.errors import ParameterError
+from muster.mission.records import rules_named_by
+from muster.mission.robots import Robot
+from muster.mission.stations import Station
+from muster.mission.tasks import Task
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
-IGNORABLE = (
+_FIRST = (
     *("prerequisite", "suitability", "skill", "lock", "capacity"),
-    *("window", "deadline", "shift", "team", "relation", "load", "battery", "min-tasks"),
+    *("window", "deadline", "shift", "team", "relation", "load", "battery"),
 )
-_AS_THEY_ARE = ("suitability", "lock", "capacity", "battery", "min-tasks")
-_PLURALS = {f"{rule}s": rule for rule in IGNORABLE if rule not in _AS_THEY_ARE}
+IGNORABLE = tuple(dict.fromkeys((*_FIRST, *rules_named_by(Robot, Task, Station))))
+"""The words of the first rules, and behind them those that keys of missions name as their rule's."""
+
+_AS_THEY_ARE = ("suitability", "lock", "capacity", "battery")
+_PLURALS = {f"{rule}s": rule for rule in _FIRST if rule not in _AS_THEY_ARE}
 """Words of earlier files and commands, read as before; and the like of the others."""
 
 
