@@ -4,23 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
+from muster.mission.declared_rules import rules_in_order
 from muster.mission.errors import ParameterError
-from muster.mission.records import rules_named_by
-from muster.mission.robots import Robot
-from muster.mission.stations import Station
-from muster.mission.tasks import Task
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
-_FIRST = (
-    *("prerequisite", "suitability", "skill", "lock", "capacity"),
-    *("window", "deadline", "shift", "team", "relation", "load", "battery"),
-)
-IGNORABLE = tuple(dict.fromkeys((*_FIRST, *rules_named_by(Robot, Task, Station))))
-"""The words of the first rules, and behind them those that keys of missions name as their rule's."""
+IGNORABLE = tuple(word for word, rule in rules_in_order().items() if rule.ignorable)
+"""The words of the rules that are installed, in the order in which reasons are sought."""
 
-_AS_THEY_ARE = ("suitability", "lock", "capacity", "battery")
-_PLURALS = {f"{rule}s": rule for rule in _FIRST if rule not in _AS_THEY_ARE}
+_IN_THE_PLURAL = ("prerequisite", "skill", "window", "deadline", "shift", "team", "relation", "load")
+_PLURALS = {f"{rule}s": rule for rule in _IN_THE_PLURAL}
 """Words of earlier files and commands, read as before; and the like of the others."""
 
 

@@ -55,6 +55,8 @@ class RobotSnapshot:
         how fast that drains, times the usage.
     load
         what it has on board then, by commodity.
+    done
+        what it has done by then, work under way included.
     """
 
     robot: Robot
@@ -67,10 +69,11 @@ class RobotSnapshot:
     level: float | None = None
     drain: float = 1.0
     load: Mapping[str, float] = field(default_factory=dict)
+    done: tuple[Task, ...] = ()
 
     @property
     def has_past(self) -> bool:
-        return self.task is not None or self.used > 0
+        return self.task is not None or self.used > 0 or bool(self.done)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,7 +168,8 @@ def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
     problem = _delayed(rest, replace(problem, known=known))
     problem = _with_levels(rest, _bearable(problem, past))
-    problem = replace(problem, aboard=_aboard(rest, problem))
+    done = {past[s.robot.id].id: s.done for s in rest.crew if s.robot.id in past}
+    problem = replace(problem, aboard=_aboard(rest, problem), past=done)
     charges = {snapshot.robot.id: snapshot.charge for snapshot in rest.crew}
     if any(charge is not None for charge in charges.values()):
         problem = replace(problem, charges=tuple(charges[robot.id] for robot in problem.robots))
@@ -409,7 +413,6 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
         position=snapshot.spot.point[: mission.dimensions],
         end_position=None if snapshot.home is None else snapshot.home[: mission.dimensions],
         return_to_start=False,
-        min_tasks=0,  # what was planned kept it; what happens since may not leave so many
         work_capacity=capacity,
         load_at_start=_load_of(snapshot, rest),
         available_from_s=available_from_s,

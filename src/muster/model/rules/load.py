@@ -42,7 +42,7 @@ class Load(Rule):
     """After every stop the load of each commodity is between 0 and the robot's `load_capacity`."""
 
     word: ClassVar[str] = "load"
-    asked = ("load",)
+    asked: ClassVar[Mapping[str, str]] = {"meters": "load"}
     key = "load_capacity"
     lifted_late = True
     of_a_route = True
@@ -65,14 +65,11 @@ class Load(Rule):
         for name in names:
             parts.meter(_meter(problem, name, parts.taken_on_by))
 
-    def of_robot(self, problem: Question, i: int) -> Hashable:
-        robot = problem.robots[i]
-        return tuple((name, room_for(robot, name), _at_start(robot).get(name, 0.0)) for name in commodities(problem))
-
     def kinds(self, problem: Question) -> list[Hashable] | None:
-        if not commodities(problem):
+        names = commodities(problem)
+        if not names:
             return None
-        return [self.of_robot(problem, i) for i in range(len(problem.robots))]
+        return [tuple(room_for(robot, name) for name in names) for robot in problem.robots]
 
     def refusal(self, problem: Question, i: int, j: int) -> str | None:
         lacking = _too_much(problem, problem.robots[i], problem.tasks[j])

@@ -59,6 +59,11 @@ class Question(Protocol):
     @property
     def model(self) -> PlanModel: ...
 
+    @property
+    def past(self) -> Mapping[str, tuple[Task, ...]] | None: ...
+
+    def amounts(self, of: Callable[[Task], float]) -> Floats: ...
+
     def holds(self, rule: str) -> bool: ...
 
     def may(self, i: int, j: int) -> bool: ...
@@ -221,9 +226,11 @@ class Rule:
         whether it can be ignored.
     about_one
         whether it looks at one robot at a time; else at the teams that it can be in.
-    asked, for_good
-        what an allocator must be able to do to keep it, where not all can: words of `capabilities`; and whether one can
-        that never takes a task out of a route again.
+    asked
+        of primitives (fields of `Parts`) that not every allocator can keep, the word of `capabilities` for those that
+        can. Other rules that give the primitive ask for the same.
+    for_good
+        whether an allocator can keep them that never takes a task out of a route again.
     lifted_late
         whether reasons seek it among all places in a route, one such rule after the other in the order of rules.
     of_a_route, of_the_team
@@ -239,7 +246,7 @@ class Rule:
     word: ClassVar[str]
     ignorable: ClassVar[bool] = True
     about_one: ClassVar[bool] = True
-    asked: ClassVar[tuple[str, ...]] = ()
+    asked: ClassVar[Mapping[str, str]] = {}
     for_good: ClassVar[bool] = True
     lifted_late: ClassVar[bool] = False
     of_a_route: ClassVar[bool] = False
@@ -249,19 +256,18 @@ class Rule:
     no_change: ClassVar[Any] = None
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        """For each word of `asked` the place of a problem that asks for it first; None: none does."""
+        """For each word of `asked` the place of a problem that asks for it first; None: none does.
+
+        Where nothing is said it is a robot or task with a key that the rule declares.
+        """
         return {}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         """Contribute the primitives that it comes to."""
 
-    def of_robot(self, problem: Question, i: int) -> Hashable:
-        """What it depends on of robot i, beside the tasks that the robot may do: the same for robots that are alike."""
-        return None
-
     def kinds(self, problem: Question) -> Sequence[Hashable] | None:
         """For each robot what `refusal` depends on, beside the task; None: it refuses nobody."""
-        return None
+        return None if type(self).refusal is Rule.refusal else range(len(problem.robots))
 
     def refusal(self, problem: Question, i: int, j: int) -> str | None:
         """Why robot i may not do task j whatever its route; None if it may."""
