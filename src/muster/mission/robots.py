@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Any
 
 from muster.mission.goods import Amount, Amounts, by_commodity
 from muster.mission.place_types import Place
-from muster.mission.declared_rules import Bearer
 from muster.mission.records import Checked, Record, record, spec
 from muster.mission.rule_keys import RuleKeys
 from muster.mission.rules import Rules
@@ -51,10 +50,8 @@ def _joined(shifts: Sequence[Window]) -> tuple[Window, ...]:
 
 
 @record
-class Robot(RuleKeys):
+class Robot(RuleKeys, bearer="robot"):
     """One agent."""
-
-    bearer: ClassVar[Bearer] = "robot"
 
     id: str = spec(Text(), "unique among the robots")
     position: Point = spec(Position(), "where it starts", instead=IN_DEGREES)

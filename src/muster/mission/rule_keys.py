@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
-from typing import Any, ClassVar, TypeVar
+from typing import Any, TypeVar
 
 from muster.mission.declared_rules import Bearer, keys_beside
 from muster.mission.errors import PluginError
@@ -13,14 +13,18 @@ from muster.mission.records import Checked, key_of, part_of, read_further, speci
 from muster.mission.value_types import Fault, Key, shown
 
 K = TypeVar("K", bound=Checked)
+_BEARERS: dict[type[Any], Bearer] = {}
 
 
 @dataclass(frozen=True, kw_only=True)
 class RuleKeys(Checked):
     """Base of classes that bear keys of rules. In files these stand beside the others, in Python they are `extra`."""
 
-    bearer: ClassVar[Bearer]
     extra: Mapping[str, Any] = field(default_factory=dict, hash=False)
+
+    def __init_subclass__(cls, bearer: Bearer | None = None) -> None:
+        if bearer is not None:
+            _BEARERS[cls] = bearer
 
     def __post_init__(self) -> None:
         if self.extra:  # few have any
@@ -42,7 +46,7 @@ class RuleKeys(Checked):
 
     @classmethod
     def beside(cls) -> tuple[type[Checked], ...]:
-        return keys_beside(cls.bearer)
+        return keys_beside(next(_BEARERS[of] for of in cls.__mro__ if of in _BEARERS))
 
     @classmethod
     def further_keys(cls, data: Mapping[Any, Any]) -> Mapping[str, Key]:
@@ -62,7 +66,7 @@ def _further(cls: type[RuleKeys]) -> Mapping[str, Key]:
     for part in cls.beside():
         for f in specified(part):
             if key_of(f) in taken:
-                raise PluginError(f"rule with keys {part.__name__}: {key_of(f)}; expected a key that no {cls.bearer} has")
+                raise PluginError(f"rule with keys {part.__name__}: {key_of(f)}; expected a key that {cls.__name__} has not")
             taken.add(key_of(f))
             found[key_of(f)] = Key(f.metadata["kind"], f.metadata["doc"])
     return found

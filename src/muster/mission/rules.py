@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
-from muster.mission.declared_rules import Bearer
 from muster.mission.records import record, spec
 from muster.mission.rule_keys import RuleKeys
 from muster.mission.value_types import Choice, Flag, Number, Whole
@@ -13,10 +10,8 @@ OBJECTIVES = ("total+max", "total", "max", "average", "makespan", "lateness")
 
 
 @record
-class Rules(RuleKeys):
+class Rules(RuleKeys, bearer="rules"):
     """What counts, and how."""
-
-    bearer: ClassVar[Bearer] = "rules"
 
     objective: str = spec(Choice(OBJECTIVES), "what is minimised after most tasks completed", default="total+max")
     usage: str = spec(Choice(("distance", "time")), "the unit of usage: metres or seconds", default="distance")

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import field, replace
-from typing import Any, ClassVar, Self
+from typing import Any, Self
 
 from muster.mission.action_keys import ACTION_KEYS, WITH_AREA, coverage_faults
 from muster.mission.cooperation import Lag, Prerequisite, PrerequisiteOrId, TeamPart
 from muster.mission.errors import MissionError
 from muster.mission.goods import Amount, Amounts
 from muster.mission.place_types import Corners, Place
-from muster.mission.declared_rules import Bearer
 from muster.mission.records import Checked, Record, findings, record, spec
 from muster.mission.rule_keys import RuleKeys
 from muster.mission.site import IN_DEGREES, Point
@@ -133,10 +132,8 @@ class Action(Checked):
 
 
 @record
-class Work(RuleKeys):
+class Work(RuleKeys, bearer="task"):
     """What there is to do, wherever that is."""
-
-    bearer: ClassVar[Bearer] = "task"
 
     type: str | None = spec(Text(), "column of the suitability table", default=None)
     actuation_cost: float = spec(Number(minimum=0), "cost of doing it", unit="unit of usage", default=0.0)
