@@ -50,7 +50,7 @@ def main(first, count):
         module.Meaning = Meaning
     trial.timed_mission, trial.ignored_in, remedied._robot = mission_of, ignored_of, robot_of
     places.LIMITS = (*places.LIMITS[:-1], "max-tasks", places.LIMITS[-1])
-    places.SENTENCES = (*places.SENTENCES, (r"with it (\S+) would do (\d+) tasks, and does at most (\d+)", too_many))
+    places.SENTENCES = (*places.SENTENCES, (r"with it (\S+) would have (\d+) tasks, and has room for (\d+)", too_many))
     remedied.UNPROVEN = (*remedied.UNPROVEN, "max-tasks")
     reports = [trial.trial(seed) for seed in range(first, first + count)]
     failures = {report.seed: report.failures for report in reports if report.failures}

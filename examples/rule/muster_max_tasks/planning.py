@@ -36,16 +36,6 @@ class MaxTasks(Rule):
         if min(most) < math.inf:
             parts.meter(Meter.count("tasks", problem.amounts(lambda task: 1), most))
 
-    def broken_at(self, problem, i, places):
-        most = [robot.keys_of(RobotKeys).max_tasks or math.inf for robot in problem.robots]
-        routes = min((routes for routes, _ in places), key=lambda routes: sum(map(_above, routes, most)))
-        k = next(k for k, route in enumerate(routes) if _above(route, most[k]) > 0)
-        return f"with it {problem.robots[k].id} would do {len(routes[k])} tasks, and does at most {most[k]}"
-
     def lifted(self, problem, i):
         most = problem.robots[i].keys_of(RobotKeys).max_tasks
         return None if most is None else MoreTasks(most, None)
-
-
-def _above(route, most):
-    return max(0, len(route) - most)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -51,6 +51,7 @@ class Meter:
     at_start: Floats
     pending: Floats
     pending_at_start: Floats
+    rule: str = ""  # the word of the rule that contributed it
 
     @classmethod
     def count(cls, name: str, change: Sequence[float], most: Sequence[float]) -> Meter:
@@ -157,7 +158,7 @@ class Parts:
     def meter(self, meter: Meter) -> None:
         """A quantity stays between 0 and the robot's room for it."""
         self._given("meters")
-        self.meters.append(meter)
+        self.meters.append(replace(meter, rule=self.rule))
 
     def has_energy(self, i: int, room: float, at_start: float) -> None:
         """Robot i has energy for so much usage at most, and at first; stations give it more."""

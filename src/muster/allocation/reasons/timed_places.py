@@ -208,6 +208,8 @@ class TimedPlaces(TimedTeams):
         said = _RELAXED[word].broken_at(self.problem, i, [(place.routes, found) for place, found in left])
         if said is not None:
             return said
+        if word not in ("shift", "window", "deadline"):
+            return f"at every place in its route the rule {word} would be broken"
         if word == "shift":
             ends = (self._route_end(found, i, place.routes[i]) for place, found in left)
             own = beyond(self.problem, i, min(ends))

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import product
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy.typing as npt
 
 from muster import core
 from muster.mission.model import Mission, Robot, Task
-from muster.model.parts import Parts
+from muster.model.parts import Meter, Parts
 from muster.model.plan_model import PlanModel
 
 Floats = npt.NDArray[np.float64]
@@ -292,7 +293,9 @@ class Rule:
 
     def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
         """How routes with one more task for robot i break it, where they break it least; None: by their times."""
-        return None
+        own = [meter for meter in problem.model.meters if meter.rule == self.word]
+        found = [above_room(problem, own, routes) for routes, _ in places]
+        return min(found, key=lambda one: one[0])[1] if own else None
 
     def never_used(self, mission: Mission, robot: Robot) -> str | None:
         """Why a robot of a mission does nothing, whatever the plan; None if it may do something."""
@@ -309,6 +312,18 @@ class Rule:
     def change(self, problem: Question, robot: Robot, task: Task) -> Change | None:
         """The least change with which the rule does not refuse the pair; None if none is needed."""
         return None
+
+
+def above_room(problem: Question, meters: Sequence[Meter], routes: Routes) -> tuple[float, str]:
+    """By how much routes are above the room of robots on meters, in all, and of the first such robot in words."""
+    above, said = 0.0, ""
+    for meter, (i, route) in product(meters, enumerate(routes)):
+        most = float(meter.most[i])
+        peak = float(meter.at_start[i] + np.cumsum(meter.change[route]).max(initial=0.0))
+        if peak > most:
+            above += peak - most
+            said = said or f"with it {problem.robots[i].id} would have {peak:g} {meter.name}, and has room for {most:g}"
+    return above, said or "at every place in its route it would be broken"
 
 
 def first_task(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
