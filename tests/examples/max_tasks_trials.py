@@ -54,7 +54,9 @@ def main(first, count):
     remedied.UNPROVEN = (*remedied.UNPROVEN, "max-tasks")
     reports = [trial.trial(seed) for seed in range(first, first + count)]
     failures = {report.seed: report.failures for report in reports if report.failures}
-    json.dump({"failures": failures, "counts": sum((Counter(report.counts) for report in reports), Counter())}, sys.stdout)
+    json.dump(
+        {"failures": failures, "counts": sum((Counter(report.counts) for report in reports), Counter())}, sys.stdout
+    )
 
 
 def too_many(found, word, name, count, most):

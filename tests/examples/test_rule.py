@@ -101,7 +101,9 @@ def test_an_allocator_that_cannot_keep_it_refuses_by_name(muster):
 
 
 def test_it_is_ignored_by_its_word(muster):
-    told = json.loads(muster("solve", MISSION, "--iterations", "50", "--ignore", "max-tasks", "--format", "json").stdout)
+    told = json.loads(
+        muster("solve", MISSION, "--iterations", "50", "--ignore", "max-tasks", "--format", "json").stdout
+    )
     assert (told["ignored"], told["unassigned"]) == (["max-tasks"], [])
 
 
@@ -187,7 +189,7 @@ def test_the_form_of_missions_has_a_column_for_it(run):
 
 
 @pytest.mark.long(keep=1)
-@pytest.mark.parametrize("first", (0, 12, 24))
+@pytest.mark.parametrize("first", [0, 12, 24])
 def test_every_plan_of_small_missions_says_the_same(run, first):
     told = json.loads(run("-m", "tests.examples.max_tasks_trials", first, 12).stdout)
     assert told["failures"] == {}

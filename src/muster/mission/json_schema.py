@@ -1,7 +1,7 @@
 """The published JSON Schema of mission files, made from the model.
 
-`python -m muster.mission.json_schema` prints it, with the actions and rules of installed packages; the file beside this one has
-those that ship, and is kept equal to it by a test.
+`python -m muster.mission.json_schema` prints it, with the actions and rules of installed packages; the file beside this
+one has those that ship, and is kept equal to it by a test.
 """
 
 from __future__ import annotations

@@ -405,7 +405,7 @@ def _unknown_keys(
 def read_further(cls: type[Checked], data: Mapping[str, Any], at: Path, faults: list[Fault]) -> dict[str, Any]:
     """The values of keys that are not fields, for the field `extra`."""
     keys, before = cls.further_keys(data), len(faults)
-    given = {key: one for key, one in keys.items() if data.get(key) is not None and data[key] is not INVALID}
+    given = {key: one for key, one in keys.items() if data.get(key) is not None}
     read = {key: one.kind.read(data[key], (*at, key), faults) for key, one in given.items()}
     if len(faults) == before:
         for part in cls.beside():
@@ -415,7 +415,7 @@ def read_further(cls: type[Checked], data: Mapping[str, Any], at: Path, faults: 
 
 def part_of(cls: type[C], extra: Mapping[str, Any]) -> C:
     """What `extra` holds of the keys of a class, which were checked when they were read, as an instance of it."""
-    return Record(cls, cls.__name__).instance(_of(cls, extra))  # type: ignore[type-var, arg-type, no-any-return]
+    return Record(cls, cls.__name__).instance(_of(cls, extra))  # type: ignore[arg-type, no-any-return]
 
 
 def _of(cls: type[Any], extra: Mapping[str, Any]) -> dict[str, Any]:

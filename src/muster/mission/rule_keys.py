@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
 from typing import Any, TypeVar
 
 from muster.mission.declared_rules import Bearer, keys_beside
@@ -50,10 +49,14 @@ class RuleKeys(Checked):
 
     @classmethod
     def further_keys(cls, data: Mapping[Any, Any]) -> Mapping[str, Key]:
-        return _further(cls)
+        if cls not in _FURTHER:  # looked up for each record that is read
+            _FURTHER[cls] = _further(cls)
+        return _FURTHER[cls]
 
 
-@cache
+_FURTHER: dict[type[Any], Mapping[str, Key]] = {}
+
+
 def _further(cls: type[RuleKeys]) -> Mapping[str, Key]:
     """The keys of rules.
 
@@ -66,7 +69,9 @@ def _further(cls: type[RuleKeys]) -> Mapping[str, Key]:
     for part in cls.beside():
         for f in specified(part):
             if key_of(f) in taken:
-                raise PluginError(f"rule with keys {part.__name__}: {key_of(f)}; expected a key that {cls.__name__} has not")
+                raise PluginError(
+                    f"rule with keys {part.__name__}: {key_of(f)}; expected a key that {cls.__name__} has not"
+                )
             taken.add(key_of(f))
             found[key_of(f)] = Key(f.metadata["kind"], f.metadata["doc"])
     return found

@@ -48,7 +48,8 @@ def frame_of_records(kind: type[Any], records: Iterable[Any]) -> DataFrame:
 def _row(one: Any) -> dict[str, Any]:
     """The fields of a record, and what it says by keys of rules."""
     own = asdict(one)
-    return own | own.pop("extra", {})
+    extra: dict[str, Any] = own.pop("extra", {})
+    return own | extra
 
 
 def html_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> str:

@@ -83,7 +83,9 @@ class Parts:
     least_stops: dict[int, int] = field(default_factory=dict)
     meters: list[Meter] = field(default_factory=list)
     energy: dict[int, tuple[float, float]] = field(default_factory=dict)
-    given_by: dict[str, str] = field(default_factory=dict)  # of kinds of primitives the word of the first rule that gave some
+    given_by: dict[str, str] = field(
+        default_factory=dict
+    )  # of kinds of primitives the word of the first rule that gave some
     rule: str = ""  # the word of the rule that contributes now; empty: none
     free: set[int] = field(default_factory=set)  # robots, or tasks, that the rule which contributes now does not bind
 

@@ -179,11 +179,7 @@ class PlanModel:
 
     def of_robot(self, i: int) -> object:
         """What it says of robot i, beside the tasks that it may do and its capacity: the same for robots alike."""
-        aboard = [
-            float(of[i])
-            for meter in self.meters
-            for of in (meter.most, meter.at_start, meter.pending_at_start)
-        ]
+        aboard = [float(of[i]) for meter in self.meters for of in (meter.most, meter.at_start, meter.pending_at_start)]
         energy = float(self.energy[i]), float(self.energy_at_start[i])
         return float(self.over_by[i]), int(self.least_stops[i]), energy, tuple(aboard), self.in_team(i)
 

@@ -54,7 +54,9 @@ def all_rules() -> tuple[Rule, ...]:
     for name, declared in rules_in_order().items():
         rule = implemented(name, declared.judge)
         if declared.ignorable and getattr(rule, "kind", None) != name:
-            raise PluginError(f"rule {name}: {declared.judge}; expected a muster.verification.rules.Rule of kind {name}")
+            raise PluginError(
+                f"rule {name}: {declared.judge}; expected a muster.verification.rules.Rule of kind {name}"
+            )
         found.append(rule)
     return tuple(found)
 

@@ -18,7 +18,6 @@ from muster_control.pages.editing.table import Column, Table
 from muster_control.pages.notices import warn, words_of
 
 
-
 def _of_rules(model: type[Checked]) -> tuple[Column, ...]:
     """The columns of the keys that rules of other packages bring."""
     return tuple(_column(key_of(f), f.metadata["kind"]) for part in model.beside() for f in specified(part))
