@@ -133,11 +133,6 @@ def shown_if_used(cls: type[Any]) -> tuple[str, ...]:
     return tuple(f.name for f in all_keys(cls) if f.metadata["if_used"])
 
 
-def rules_named_by(*classes: type[Any]) -> tuple[str, ...]:
-    """Return the words of the rules that fields state, in the order of the fields."""
-    return tuple(f.metadata["rule"] for cls in classes for f in _naming_rules(cls))
-
-
 def stated_rules(value: Any) -> tuple[Field[Any], ...]:
     """Return the fields of a record that name their rule, where they hold another value than the default."""
     return tuple(f for f in _naming_rules(type(value)) if getattr(value, f.name) != f.default)

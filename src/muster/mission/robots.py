@@ -135,7 +135,7 @@ class Robot(RuleKeys, bearer="robot"):
         if not shifts:
             return {}
         bounds = {"available_from_s": shifts[0][0], "available_until_s": shifts[-1][1]}
-        if any(values.get(name) not in (_AVAILABLE[name], bound) for name, bound in bounds.items()):
+        if any(values.get(name, _AVAILABLE[name]) not in (_AVAILABLE[name], bound) for name, bound in bounds.items()):
             return {}  # a fault
         return {"shifts_s": shifts if len(shifts) > 1 else (), **bounds}
 

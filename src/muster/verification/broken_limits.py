@@ -4,16 +4,39 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from muster.mission.tasks import Task
 from muster.verification.measure import MeasuredRoute, Step
+from muster.verification.rules.shift import Shifts
 from muster.verification.schedule_nodes import is_after, names_of, place_name
 from muster.verification.station_queues import Name
 from muster.verification.verdict import Violation
 
-if TYPE_CHECKING:
-    from muster.verification.schedule import Graph
+
+class Graph(Protocol):
+    """The earliest times of routes, and the limits that they are to keep, as `schedule` has them."""
+
+    routes: Sequence[MeasuredRoute]
+    ignored: Sequence[str]
+    task: dict[str, Task]
+    windows: dict[str, list[tuple[float, float]]]
+    shifts: dict[str, Shifts]
+    begin: dict[Name, float]
+    node_of: dict[Name, Name]
+    seconds: dict[Name, float]
+
+    def limit(self, limit: float) -> float:
+        """Return a limit, moved by a margin."""
+        ...
+
+    def free(self, robot: str, before: Name | None) -> float:
+        """Return when a robot may leave its start, or has ended a stop."""
+        ...
+
+    def back(self, route: MeasuredRoute) -> float:
+        """Return when a route that has stops ends."""
+        ...
 
 
 def broken_limits(graph: Graph) -> Iterator[Violation]:
@@ -46,20 +69,26 @@ def _outside_shifts(graph: Graph, route: MeasuredRoute) -> Iterator[Violation]:
     for name, stop in zip(names_of(route), route.stops, strict=True):
         place, free = place_name(name), graph.free(robot, before)
         if math.isinf(shifts.begin(free, stop.leg.seconds)):
-            yield _shift_violation(robot, None, f"the way to {place}", free, stop.leg.seconds)
+            yield _shift_violation(robot, None, f"the way to {place}", free, stop.leg.seconds, _NONE_LEFT)
         begin = graph.begin[graph.node_of[name]]
-        if isinstance(stop, Step) and math.isinf(shifts.begin(begin, stop.seconds)):
-            yield _shift_violation(robot, place, f"the work on {place}", begin, stop.seconds)
+        if isinstance(stop, Step) and is_after(first := shifts.begin(begin, stop.seconds), begin):
+            why = _NONE_LEFT if math.isinf(first) else _TOO_LATE_THEN
+            yield _shift_violation(robot, place, f"the work on {place}", begin, stop.seconds, why)
         before = name
     if route.last_leg is not None:
         free = graph.free(robot, before)
         if math.isinf(shifts.begin(free, route.last_leg.seconds)):
-            yield _shift_violation(robot, None, "the way to its end", free, route.last_leg.seconds)
+            yield _shift_violation(robot, None, "the way to its end", free, route.last_leg.seconds, _NONE_LEFT)
 
 
-def _shift_violation(robot: str, task: str | None, what: str, begin: float, seconds: float) -> Violation:
-    detail = f"{what} takes {seconds:,.10g} s from {begin:,.10g} s at the earliest; no shift left has room for it"
-    return Violation("shift", robot, task, detail)
+_NONE_LEFT = "no shift left has room for it"
+_TOO_LATE_THEN = "that is not within a shift, and in the next one other limits forbid it"
+
+
+def _shift_violation(robot: str, task: str | None, what: str, begin: float, seconds: float, why: str) -> Violation:
+    return Violation(
+        "shift", robot, task, f"{what} takes {seconds:,.10g} s from {begin:,.10g} s at the earliest; {why}"
+    )
 
 
 def _after_last_shift(graph: Graph, route: MeasuredRoute) -> Iterator[Violation]:
