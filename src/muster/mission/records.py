@@ -268,7 +268,9 @@ class Record:
         further = self.of.further_keys(value)
         if keys.unknown:
             faults.extend(_unknown_keys(self.of, keys.unknown, further, value, at))
-        values = {"extra": extra} if further and (extra := read_further(self.of, value, at, faults)) else {}
+        values: dict[str, Any] = (
+            {"extra": extra} if further and (extra := read_further(self.of, value, at, faults)) else {}
+        )
         for name, kind, read_as, may_be_null in keys.fields:
             item = value.get(name, _MISSING)
             if item is _MISSING:
