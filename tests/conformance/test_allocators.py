@@ -16,7 +16,7 @@ from muster.mission.system.clock import VirtualClock
 from muster.model.problem import Problem
 
 every_allocator = pytest.mark.parametrize("allocator", ALLOCATORS)
-RULES = ("skill", "suitability", "lock", "prerequisite", "capacity")
+RULES = ("prerequisite", "suitability", "skill", "lock", "capacity")
 
 
 def without_times(plan):

@@ -11,7 +11,7 @@ from muster.model.rules import all_rules
 RETURN = "makespan-return"
 """That the makespan counts the ways to the ends of routes, `rules.makespan_includes_return`."""
 
-_WORDS = (*(word for rule in all_rules() for word in rule.asked.values()), "lateness", RETURN)
+_WORDS = tuple(dict.fromkeys((*(word for rule in all_rules() for word in rule.asked.values()), "lateness", RETURN)))
 
 ALL = frozenset(_WORDS)
 """Everything that an allocator can be asked for beside what all can."""

@@ -72,9 +72,15 @@ RULES: Registry[DeclaredRule] = Registry("rule", "muster.rules", _checked)
 
 
 @cache
+def usable_rules() -> Mapping[str, DeclaredRule]:
+    """All rules that can be loaded, by name, in the order in which they are listed."""
+    return RULES.usable()
+
+
+@cache
 def rules_in_order() -> Mapping[str, DeclaredRule]:
-    """All rules that can be loaded, by name, in the order in which reasons are sought."""
-    return dict(sorted(RULES.usable().items(), key=lambda rule: (rule[1].order, rule[0])))
+    """The same in the order in which reasons are sought."""
+    return dict(sorted(usable_rules().items(), key=lambda rule: (rule[1].order, rule[0])))
 
 
 @cache

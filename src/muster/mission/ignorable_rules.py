@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import MISSING, fields, replace
 from typing import TYPE_CHECKING, TypeVar
 
-from muster.mission.declared_rules import rules_in_order
+from muster.mission.declared_rules import usable_rules
 from muster.mission.errors import ParameterError
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from muster.mission.robots import Robot
     from muster.mission.tasks import Task
 
-IGNORABLE = tuple(word for word, rule in rules_in_order().items() if rule.ignorable)
-"""The words of the rules that are installed, in the order in which reasons are sought."""
+IGNORABLE = tuple(word for word, rule in usable_rules().items() if rule.ignorable)
+"""The words of the rules that are installed, those that ship first."""
 
 _IN_THE_PLURAL = ("prerequisite", "skill", "window", "deadline", "shift", "team", "relation", "load")
 _PLURALS = {f"{rule}s": rule for rule in _IN_THE_PLURAL}

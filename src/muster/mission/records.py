@@ -89,8 +89,13 @@ def record(cls: type[C]) -> type[C]:
     """Make a class of fields made by `spec` a frozen, keyword-only dataclass whose help tells of each field."""
     made: Any = dataclass(frozen=True, kw_only=True)(cls)
     made.__init__ = _naming_unknown_fields(made.__init__, made)
-    made.__doc__ = _with_parameters(inspect.cleandoc(cls.__doc__ or ""), fields_text(specified(made)))
+    made.__doc__ = _with_parameters(inspect.cleandoc(cls.__doc__ or ""), fields_text(_told(made)))
     return cls
+
+
+def _told(cls: type[Any]) -> tuple[Field[Any], ...]:
+    """The fields of which the help of a class tells."""
+    return (*specified(cls), *(f for f in fields(cls) if "doc" in f.metadata and "kind" not in f.metadata))
 
 
 def _with_parameters(words: str, parameters: str) -> str:

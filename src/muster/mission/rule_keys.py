@@ -19,7 +19,9 @@ _BEARERS: dict[type[Any], Bearer] = {}
 class RuleKeys(Checked):
     """Base of classes that bear keys of rules. In files these stand beside the others, in Python they are `extra`."""
 
-    extra: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    extra: Mapping[str, Any] = field(
+        default_factory=dict, hash=False, metadata={"doc": "by key what it says by rules of other packages"}
+    )
 
     def __init_subclass__(cls, bearer: Bearer | None = None) -> None:
         if bearer is not None:
