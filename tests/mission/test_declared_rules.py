@@ -22,7 +22,7 @@ class Needed(Checked):
 def test_all_that_ship_are_declared_and_sought_in_the_order_that_they_declare():
     assert list(rules_in_order()) == sorted(RULES.shipped, key=lambda name: RULES[name].order)
     planned = [name for name, rule in rules_in_order().items() if rule.planning and rule.ignorable]
-    assert [rule.word for rule in all_rules() if rule.ignorable] == planned
+    assert list(dict.fromkeys(rule.word for rule in all_rules() if rule.word in planned)) == planned
     assert set(IGNORABLE) == {name for name, rule in RULES.items() if rule.ignorable}
 
 

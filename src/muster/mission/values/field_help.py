@@ -28,7 +28,7 @@ def fields_text(fields: Sequence[Field[Any]]) -> str:
 
 def _lines(f: Field[Any]) -> tuple[str, str]:
     needed = f.default is MISSING and f.default_factory is MISSING
-    unless_given = f.default if f.default is not MISSING or needed else f.default_factory()  # type: ignore[misc]
+    unless_given = f.default if f.default_factory is MISSING else f.default_factory()
     default = "required" if needed else f"default {_shown(unless_given)}"
     head = f"{f.name} : {', '.join(filter(None, (str(f.type), unit_of(f), default)))}"
     return head, f"    {f.metadata['doc']}{_choices(f.metadata.get('kind'))}"
