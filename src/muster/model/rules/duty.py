@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -46,7 +46,7 @@ class Duty(Rule):
     """A route ends at most `longest_duty_s` after its robot leaves its start, as late as that demands."""
 
     word: ClassVar[str] = "duty"
-    asked = ("duty",)
+    asked: ClassVar[Mapping[str, str]] = {"lasts_most": "duty"}
     lifted_late = True
     key = "duty"
 
@@ -58,9 +58,6 @@ class Duty(Rule):
         for i, robot in enumerate(problem.robots):
             if robot.longest_duty_s is not None:
                 parts.lasts(i, robot.longest_duty_s)
-
-    def of_robot(self, problem: Question, i: int) -> Hashable:
-        return float(problem.model.lasts_most[i])
 
     def possible(self, limits: Limits) -> Bools | None:
         longest = limits.rules.lasts_most

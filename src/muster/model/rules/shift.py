@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import ClassVar
 
@@ -60,7 +60,7 @@ class Shift(Rule):
     """The end of the route is at most `available_until_s`; legs and work are each within one of `shifts_s`, if any."""
 
     word: ClassVar[str] = "shift"
-    asked = ("shift", "rests")
+    asked: ClassVar[Mapping[str, str]] = {"over_by": "shift", "spans": "rests"}
     lifted_late = True
     key = "shift"
 
@@ -77,9 +77,6 @@ class Shift(Rule):
                 parts.is_over(i, robot.available_until_s)
             if robot.shifts_s:  # the end of the last one is that of the route
                 parts.rests(i, (*robot.shifts_s[:-1], (robot.shifts_s[-1][0], None)))
-
-    def of_robot(self, problem: Question, i: int) -> Hashable:
-        return float(problem.model.over_by[i]), tuple(problem.model.spans(i))
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.is_timed:
