@@ -11,10 +11,10 @@ from muster.execution.executor import Executor
 from muster.execution.replanning.reallocation import Revision
 from muster.execution.reports.report import report_of
 from muster.execution.status import status_of
-from muster.execution.timing.teams import lacking
 from muster.mission.errors import ParameterError
 from muster.mission.model import DelayedTask, Event, Lag, TeamPart
 from muster.mission.plan import Reason, Unassigned
+from muster.model.under_way import UnderWay
 from muster.state import MissionState
 from muster.state.run_events import PlanAdopted
 from muster.state.task_events import Ends
@@ -41,7 +41,7 @@ def keeping(rest):
             for name, robot in crew.items()
             if one.id in routes[name] and name not in rest.refusals.get(one.id, {})
         ]
-        if one.id in rest.expired or lacking(one, able):
+        if one.id in rest.expired or UnderWay(rest.mission, ()).lacking(one, able):
             able = []
         for name, route in routes.items():
             routes[name] = tuple(other for other in route if other != one.id or crew[name] in able)

@@ -55,7 +55,7 @@ class Account:
         by robot the share of its battery that it last reported, of those that do.
     stations
         by robot with a battery, or that was at a station, what it did there.
-    shifts_exceeded_s
+    overtime_s
         by robot how long it was under way after its shift, of those that were.
     back_s
         when robots were back, where that counts for the makespan.
@@ -79,7 +79,7 @@ class Account:
     done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     charges: Mapping[str, float] = field(default_factory=dict)
     stations: Mapping[str, StationAccount] = field(default_factory=dict)
-    shifts_exceeded_s: Mapping[str, float] = field(default_factory=dict)
+    overtime_s: Mapping[str, float] = field(default_factory=dict)
     back_s: tuple[float, ...] = ()
     traffic: TrafficAccount = field(default_factory=TrafficAccount)
     waits_s: Mapping[str, float] = field(default_factory=dict)
@@ -328,7 +328,7 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         missed=tuple(MissedReport(one.task, one.at_s, one.reason, one.next_s) for one in ledger.missed),
         deadlines_missed_s={task: ledger.overdue_s(task) for task in done if ledger.overdue_s(task) > 0},
         within_exceeded_s={task: ledger.begun_too_late_s(task) for task in done if ledger.begun_too_late_s(task) > 0},
-        shifts_exceeded_s=dict(account.shifts_exceeded_s),
+        shifts_exceeded_s=dict(account.overtime_s),
         done_twice=dict(account.done_twice),
         orders=account.orders,
         tasks_forgotten=_forgotten(ledger),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -136,3 +136,21 @@ def _different(limits: Limits, unit: list[int]) -> dict[int, Bools]:
     tasks, fits = rules.places(rules.unit[unit[0]])
     able = on_some_matching(fits & limits.alone.T[tasks])
     return {j: np.asarray(able[[k for k, task in enumerate(tasks) if task == j]].any(axis=0)) for j in unit}
+
+
+def beginning_apart(task: Task, others: Collection[str]) -> Task:
+    """The task, which does not begin together with others."""
+    left = tuple(name for name in task.starts_with if name not in others)
+    return task if left == task.starts_with else replace(task, starts_with=left)
+
+
+def begins_with(other: str) -> str:
+    """Why a task cannot begin if another cannot."""
+    return f"relation: begins with {other}"
+
+
+def tied_to(same: Mapping[str, Collection[str]], others: Mapping[str, Collection[str]]) -> str:
+    """Whom robots leave to a task that have done tasks which the same robots do, or others; empty: all."""
+    said = [f"same robot as {name} ({listed(crew)})" for name, crew in same.items()]
+    said += [f"other robot than {name} ({listed(crew)})" for name, crew in others.items()]
+    return f"relation: {listed(said)}" if said else ""
