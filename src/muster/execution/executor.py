@@ -371,7 +371,7 @@ class Executor:
             self.mission.events,
             standing.orders,
             batch_s=standing.batch_s,
-            after_s=time_s,
+            since_s=time_s,
             until_s=standing.takes_orders_until_s,
         )
 
