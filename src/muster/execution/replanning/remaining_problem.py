@@ -22,7 +22,7 @@ from muster.mission.model import Mission, Robot, Station, Task
 from muster.mission.plan import Plan, Route
 from muster.model.charges import Charge
 from muster.model.problem import Problem
-from muster.model.rules.relation import begins_with
+from muster.model.rules.relation import begins_with, tied_among
 from muster.model.rules.shift import extended, is_back_late
 from muster.model.under_way import UnderWay
 from muster.motion.port import Place
@@ -290,7 +290,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
     hopeful = {name: task for name, task in hopeful.items() if name in sure}
     _drop_units_without_hope(rest, hopeful, hopeless)
     _drop_transports_without_hope(rest, hopeful, hopeless)
-    return list(hopeful.values()), hopeless
+    return [tied_among(task, hopeful) for task in hopeful.values()], hopeless
 
 
 def _for_robots(task: Task, robots: tuple[str, ...] | None) -> Task:

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from muster.mission.model import Robot, Task
+from muster.mission.task_relations import RELATIONS
 from muster.model.bottleneck import on_some_matching
 from muster.model.parts import Parts
 from muster.model.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_task, listed
@@ -136,6 +137,12 @@ def _different(limits: Limits, unit: list[int]) -> dict[int, Bools]:
     tasks, fits = rules.places(rules.unit[unit[0]])
     able = on_some_matching(fits & limits.alone.T[tasks])
     return {j: np.asarray(able[[k for k, task in enumerate(tasks) if task == j]].any(axis=0)) for j in unit}
+
+
+def tied_among(task: Task, there: Collection[str]) -> Task:
+    """The task, with only those relations that are to tasks that are there."""
+    left: dict[str, Any] = {key: tuple(name for name in getattr(task, key) if name in there) for key in RELATIONS}
+    return task if all(left[key] == getattr(task, key) for key in RELATIONS) else replace(task, **left)
 
 
 def beginning_apart(task: Task, others: Collection[str]) -> Task:
