@@ -6,10 +6,15 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.mission.model import Robot, Task
+from muster.model.rules.lock import Lock
 from muster.model.rules.relation import tied_to
 from muster.model.rules.team import by_so_many
-from muster.model.rules.window import begun_between
+from muster.model.rules.window import Window, begun_between
 from muster.state.task_ledger import Ledger
+
+BY_WHICH_TASKS_ARE_BOUND = (Lock.word, Window.word)
+"""The rules in whose terms tasks that have begun bind others: they hold in what is left, even where the mission's own
+locks and windows, without which the tasks are kept, do not."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from muster.allocation.fixed import admissible_alone, with_fixed_routes
-from muster.execution.replanning.relations import Binding
+from muster.execution.replanning.relations import BY_WHICH_TASKS_ARE_BOUND, Binding
 from muster.execution.replanning.travel import Spot, Travel
 from muster.mission.goods import Amount, as_amount, by_commodity
 from muster.mission.model import Mission, Robot, Station, Task
@@ -161,8 +161,8 @@ def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     tasks, hopeless = _tasks_with_hope(rest, travel)
     past = _past(rest)
     mission = _mission(rest, [*past.values(), *tasks])
-    others = tuple(rule for rule in rest.ignored if rule != "lock")  # the tasks are without it already
-    problem = Problem.compile(mission, rest.objective, ignored=others)
+    ignored = tuple(rule for rule in rest.ignored if rule not in BY_WHICH_TASKS_ARE_BOUND)
+    problem = Problem.compile(mission, rest.objective, ignored=ignored)
     spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
     known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
     problem = _delayed(rest, replace(problem, known=known))
