@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from muster.mission.model import Mission, Robot, Task
+from muster.mission.system.clock import TIME_ROUNDING_S
 from muster.model.bottleneck import matched
 from muster.model.parts import Openings
 from muster.model.plan_model import PlanModel
@@ -19,8 +20,6 @@ from muster.model.problem import Problem
 from muster.model.rules import deadline, prerequisite, shift, window
 from muster.model.rules.team import missing_of_seat
 
-TIME_ROUNDING_S = 1e-6
-"""By which a time may be past a limit: clocks add up steps."""
 _ROUNDING = 1e-9  # relative; by which sums may be below what is needed
 
 

@@ -38,7 +38,7 @@ _KEPT: Mapping[str, Any] = {
 """What a checkpoint has of a state, and the types, but for robots, doors and the ledger of tasks."""
 _DERIVED = ("mission", "ignored", "tasks", "touched", "_model")
 """What it has of the ledger otherwise, or not at all."""
-_LEDGER = {name: of for name, of in get_type_hints(Ledger).items() if name not in _DERIVED}
+_LEDGER = {name: of for name, of in get_type_hints(Ledger, localns={"UnderWay": Any}).items() if name not in _DERIVED}
 _ROBOT = {name: of for name, of in get_type_hints(KnownRobot).items() if name != "robot"}
 
 

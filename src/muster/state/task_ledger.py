@@ -7,13 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from muster.mission.goods import as_amount
 from muster.mission.model import Mission, Point, Robot, Task
-from muster.model.rules.relation import beginning_apart, begins_with
-from muster.model.under_way import TIME_ROUNDING_S, UnderWay
-from muster.state.reasons import cancelled_at, some_of
+from muster.mission.system.clock import TIME_ROUNDING_S
+from muster.mission.task_relations import beginning_apart
+from muster.state.reasons import begins_with, cancelled_at, some_of
+
+if TYPE_CHECKING:
+    from muster.model.under_way import UnderWay
 
 KEPT_LOST = 20
 """How many tasks that were lost and forgotten are still listed with the reason: the last ones."""
@@ -116,6 +119,8 @@ class Ledger:
     def model(self) -> UnderWay:
         """What rules ask of the tasks as they are now."""
         if self._model is None:
+            from muster.model.under_way import UnderWay  # with NumPy, without which events are known and said
+
             self._model = UnderWay(self.mission, tuple(self.tasks.values()), self.ignored)
         return self._model
 

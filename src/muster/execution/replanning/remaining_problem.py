@@ -22,11 +22,11 @@ from muster.mission.model import Mission, Robot, Station, Task
 from muster.mission.plan import Plan, Route
 from muster.model.charges import Charge
 from muster.model.problem import Problem
-from muster.model.rules.relation import begins_with, tied_among
+from muster.model.rules.relation import tied_among
 from muster.model.rules.shift import extended, is_back_late
 from muster.model.under_way import UnderWay
 from muster.motion.port import Place
-from muster.state.reasons import in_one_line
+from muster.state.reasons import begins_with, in_one_line
 
 SO_FAR = "so far"
 _MOST_RESERVE = 0.9  # share of the capacity that is left for the way to a station at most

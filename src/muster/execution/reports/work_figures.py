@@ -6,7 +6,8 @@ from collections.abc import Iterable
 
 from muster.execution.reports.report import StationAccount
 from muster.execution.robots.robot_state import Activity, RobotState
-from muster.model.under_way import TIME_ROUNDING_S, UnderWay
+from muster.mission.system.clock import TIME_ROUNDING_S
+from muster.model.under_way import UnderWay
 
 
 def at_stations(state: RobotState) -> StationAccount | None:

@@ -10,9 +10,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from muster.execution.robots.robot_state import Activity, RobotState
+from muster.mission.system.clock import TIME_ROUNDING_S
 from muster.model.rules.prerequisite import waits_for_dependants
 from muster.model.rules.team import waits_for_team, waits_to_start_with
-from muster.model.under_way import TIME_ROUNDING_S, Missed, UnderWay, Wait
+from muster.model.under_way import Missed, UnderWay, Wait
 from muster.state.task_ledger import Ledger
 
 

@@ -145,17 +145,6 @@ def tied_among(task: Task, there: Collection[str]) -> Task:
     return task if all(left[key] == getattr(task, key) for key in RELATIONS) else replace(task, **left)
 
 
-def beginning_apart(task: Task, others: Collection[str]) -> Task:
-    """The task, which does not begin together with others."""
-    left = tuple(name for name in task.starts_with if name not in others)
-    return task if left == task.starts_with else replace(task, starts_with=left)
-
-
-def begins_with(other: str) -> str:
-    """Why a task cannot begin if another cannot."""
-    return f"relation: begins with {other}"
-
-
 def tied_to(same: Mapping[str, Collection[str]], others: Mapping[str, Collection[str]]) -> str:
     """Whom robots leave to a task that have done tasks which the same robots do, or others; empty: all."""
     said = [f"same robot as {name} ({listed(crew)})" for name, crew in same.items()]
