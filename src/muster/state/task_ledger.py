@@ -132,7 +132,7 @@ class Ledger:
         self.tasks[task.id] = task_as_it_holds(task, self.ignored)
         self.touched[task.id] = None
         self._tasks_changed()
-        if self.starts_s or self.ends_s or self.cancelled:
+        if _referred_to(task) and (self.starts_s or self.ends_s or self.cancelled):
             self._expire_if_too_late(task.id)
 
     def _expire_if_too_late(self, task: str) -> None:
