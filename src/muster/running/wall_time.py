@@ -10,12 +10,15 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
+from typing import TYPE_CHECKING
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.system.clock import Clock, WallClock
 from muster.mission.texts.counting import counted
-from muster.model.under_way import UnderWay
+
+if TYPE_CHECKING:
+    from muster.model.under_way import UnderWay
 
 STARTS = ("given", "now")
 """When a mission starts: as its `starts_at` says, or when the run begins, with all its times shifted."""
@@ -69,7 +72,7 @@ def require_time_left(mission: Mission, now_s: float) -> None:
 
     It is over when no task that has a time limit can begin any more, or all robots had to be back by now.
     """
-    model = UnderWay(mission, mission.tasks)
+    model = _model_of(mission)
     if all(now_s >= model.over_by_s(robot) for robot in mission.robots):
         over = "the shifts of all robots have ended"
     else:
@@ -86,7 +89,7 @@ def require_time_left(mission: Mission, now_s: float) -> None:
 
 def has_time_limits(mission: Mission) -> bool:
     """Return whether any task can come too late, or any robot has to be back by some time."""
-    model = UnderWay(mission, mission.tasks)
+    model = _model_of(mission)
     limits_s = [*map(model.over_by_s, mission.robots), *(model.last_begin_s(task.id) for task in mission.tasks)]
     return min(limits_s, default=math.inf) < math.inf
 
@@ -95,7 +98,7 @@ def notes_on_start(mission: Mission, now_s: float) -> Iterator[str]:
     """Yield lines about a start that is not now: how long the run waits, or which tasks come too late."""
     if now_s < 0:
         yield f"the mission starts at {mission.starts_at}: robots wait for {_duration(-now_s)}"
-    model = UnderWay(mission, mission.tasks)
+    model = _model_of(mission)
     late = [task.id for task in mission.tasks if now_s > model.last_begin_s(task.id)]
     if late:
         began = f"starts_at {mission.starts_at} was {_duration(now_s)} ago"
@@ -106,10 +109,16 @@ def planned_from(mission: Mission, now_s: float) -> Mission:
     """Return the mission for planning at a time of its clock: no robot is available before."""
     if now_s <= 0:
         return mission
-    model = UnderWay(mission, ())
+    model = _model_of(mission)
     until_s = [(robot, model.over_by_s(robot)) for robot in mission.robots]
     available = (replace(one, available_from_s=min(max(one.available_from_s, now_s), by_s)) for one, by_s in until_s)
     return replace(mission, robots=tuple(available))
+
+
+def _model_of(mission: Mission) -> UnderWay:
+    from muster.model.under_way import UnderWay  # with NumPy, without which servers know when missions start
+
+    return UnderWay(mission, mission.tasks)
 
 
 def _some(tasks: Sequence[str]) -> str:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.goods import as_amount
+from muster.mission.ignorable_rules import as_it_holds
 from muster.mission.model import Mission, Point, Robot, Task
 from muster.mission.system.clock import TIME_ROUNDING_S
 from muster.mission.task_relations import beginning_apart
@@ -129,7 +130,7 @@ class Ledger:
 
         One that comes too late to begin with another can never begin. It is tied to none: no other waits for it.
         """
-        self.tasks[task.id] = task_as_it_holds(task, self.ignored)
+        self.tasks[task.id] = as_it_holds(task, self.ignored)
         self.touched[task.id] = None
         self._tasks_changed()
         if _referred_to(task) and (self.starts_s or self.ends_s or self.cancelled):
@@ -145,7 +146,7 @@ class Ledger:
 
     def as_it_holds(self, robot: Robot) -> Robot:
         """A robot without what does not hold."""
-        return robot_as_it_holds(robot, self.ignored)
+        return as_it_holds(robot, self.ignored)
 
     def too_late_to_begin_with(self, tasks: Iterable[str]) -> str:
         """Why nothing can begin together with these tasks any more; empty if it still can."""
@@ -396,36 +397,6 @@ def _over(time_s: float, limit_s: float | None) -> float:
     return over if over > TIME_ROUNDING_S else 0.0
 
 
-def task_as_it_holds(task: Task, ignored: Collection[str]) -> Task:
-    """A task without the rules about time and teams that do not hold."""
-    without: dict[str, Any] = {}
-    if "window" in ignored:
-        without |= {"window_s": ()}
-    if "deadline" in ignored:
-        without |= {"deadline_s": None}
-    if "team" in ignored:
-        without |= {"robots_needed": None, "team": (), "needs": None}
-    if "relation" in ignored:
-        without |= {"same_robot_as": (), "other_robot_than": (), "starts_with": ()}
-    if "prerequisite" in ignored:
-        without |= {"lags": {}}
-    if "load" in ignored:
-        without |= {"load": None, "delivers": None}
-    return replace(task, **without) if without else task
-
-
-def robot_as_it_holds(robot: Robot, ignored: Collection[str]) -> Robot:
-    """A robot without what does not hold: its shift, its battery, what it carries."""
-    without: dict[str, Any] = {}
-    if "shift" in ignored:
-        without |= {"available_until_s": None}
-    if "battery" in ignored:
-        without |= {"battery": None}
-    if "load" in ignored:
-        without |= {"load_capacity": None, "load_at_start": None}
-    return replace(robot, **without) if without else robot
-
-
 def moved(task: Task, to: Point) -> Task:
     """The task elsewhere; its entry and exit move with it."""
 
@@ -445,5 +416,5 @@ def lying(task: Task, at: Point, amounts: Mapping[str, float]) -> Task:
     """
     has_geometry = task.action is not None and task.action.has_geometry
     there = moved(replace(task, entry=None, exit=None, action=None if has_geometry else task.action), at)
-    free = task_as_it_holds(there, ("prerequisite", "deadline", "relation"))
+    free = as_it_holds(there, ("prerequisite", "deadline", "relation"))
     return replace(free, prerequisites=(), load=as_amount(amounts))

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 from muster import core
 from muster.mission.model import Robot
+from muster.model.energy import Energy
 from muster.model.parts import Parts
 from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot
 
@@ -96,13 +97,13 @@ class Battery(Rule):
 
 def energy_room(robot: Robot) -> float:
     """Return what a robot's battery holds above its reserve when it is full; inf without a battery."""
-    return math.inf if robot.battery is None else robot.battery.capacity - robot.battery.least
+    energy = Energy.of(robot)
+    return math.inf if energy is None else energy.capacity - energy.least
 
 
 def energy_at_start(problem: Question, i: int) -> float:
     """Return what it holds above its reserve at first."""
-    battery = problem.robots[i].battery
-    if battery is None:
+    energy = Energy.of(problem.robots[i])
+    if energy is None:
         return math.inf
-    level = problem.levels[i] if problem.levels else battery.level_at_start
-    return max(0.0, level - battery.least)
+    return max(0.0, (problem.levels[i] if problem.levels else energy.at_start) - energy.least)
