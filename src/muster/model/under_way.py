@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from operator import is_not
 
 import numpy as np
 
@@ -80,6 +81,7 @@ class UnderWay:
     tasks: Collection[Task]
     ignored: Collection[str] = ()
     _over_by: dict[str, tuple[Robot, float]] = field(default_factory=dict)
+    _lacking: dict[str, tuple[Sequence[object], str]] = field(default_factory=dict)  # as last asked about each task
 
     def __post_init__(self) -> None:
         self._names = [task.id for task in self.tasks]
@@ -245,6 +247,13 @@ class UnderWay:
 
     def lacking(self, task: Task, robots: Sequence[Robot]) -> str:
         """What robots lack to be the crew of a task, in words; empty if they are enough."""
+        asked = task, *robots
+        known = self._lacking.get(task.id)
+        if known is None or len(known[0]) != len(asked) or any(map(is_not, known[0], asked)):
+            known = self._lacking[task.id] = asked, self._lack(task, robots)
+        return known[1]
+
+    def _lack(self, task: Task, robots: Sequence[Robot]) -> str:
         model = self._compiled((task.waiting_for(()),), robots)
         if sums := model.sums(0):
             have = ((name, float(able.sum()), needed) for name, (needed, able) in sums.items())
