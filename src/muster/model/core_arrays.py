@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.model import Station
-from muster.mission.values.arrays import Floats
+from muster.mission.values.arrays import Bools, Floats
 from muster.model.parts import Meter
 from muster.model.plan_model import PlanModel
 from muster.model.rules import Question
@@ -33,6 +33,7 @@ def core_arrays(problem: Question, profiles: Sequence[LegTimes]) -> dict[str, An
         "energy": model.energy if model.parts.energy else _NONE,
         "energy_at_start": model.energy_at_start if model.parts.energy else _NONE,
         "stations": [_station(station) for station in problem.mission.stations],
+        "calls": _calls(model, len(problem.mission.stations)),
         **_profiles(profiles),
         "makespan_includes_return": problem.mission.rules.makespan_includes_return,
     }
@@ -57,6 +58,7 @@ def _crews(model: PlanModel, kinds: npt.NDArray[np.int32]) -> dict[str, Any]:
     able = {name: who for j in tasks for name, (_, who) in model.sums(j).items()}
     return {
         "unit": np.array([] if alone else model.unit, dtype=np.int32),
+        "exclusive": model.exclusive if model.parts.exclusive else [],
         "same_crew": model.same_crew if model.parts.same_crew else [],
         "apart": model.apart if model.parts.apart else [],
         "parts": [
@@ -87,6 +89,12 @@ def _meters(model: PlanModel) -> dict[str, Any]:
         "load_at_start": columns(lambda meter: meter.at_start),
         "pending_at_start": columns(lambda meter: meter.pending_at_start),
     }
+
+
+def _calls(model: PlanModel, stations: int) -> Bools:
+    if not model.parts.no_calls:
+        return np.empty(0, dtype=np.bool_)
+    return np.array([[model.may_call(i, k) for k in range(stations)] for i in range(model.robots)], dtype=np.bool_)
 
 
 def _station(station: Station) -> tuple[float, float, bool, bool, int]:

@@ -133,6 +133,21 @@ class PlanModel:
         """For each task those that none of its robots does."""
         return [sorted(self.parts.apart.get(j, ())) for j in range(self.tasks)]
 
+    @cached_property
+    def exclusive(self) -> list[list[int]]:
+        """For each task those of which none is done if it is."""
+        return [sorted(self.parts.exclusive.get(j, ())) for j in range(self.tasks)]
+
+    @property
+    def most_done(self) -> int:
+        """How many tasks a plan does at most: of those that exclude each other one."""
+        pairs = [(j, k) for j, others in self.parts.exclusive.items() for k in others]
+        return len(set(_joined(pairs, self.tasks))) if pairs else self.tasks
+
+    def may_call(self, i: int, station: int) -> bool:
+        """Whether a robot may call at a station."""
+        return (i, station) not in self.parts.no_calls
+
     @property
     def with_relations(self) -> bool:
         """Whether tasks are tied to others by who does them, or begin together."""

@@ -94,7 +94,9 @@ class Problem:
         require_supported(mission)
         ignored = ignored_rules(ignored)
         if "lock" in ignored:  # taken off the tasks, as planning makes locks of its own
-            mission = replace(mission, tasks=tuple(replace(task, only_robots=None) for task in mission.tasks))
+            tasks = tuple(replace(task, only_robots=None) for task in mission.tasks)
+            stations = tuple(replace(station, only_robots=None) for station in mission.stations)
+            mission = replace(mission, tasks=tasks, stations=stations)
         return cls(
             mission=mission,
             objective=objective,
