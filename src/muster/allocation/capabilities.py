@@ -6,17 +6,17 @@ from collections.abc import Callable, Iterable, Mapping
 
 from muster.mission.errors import ParameterError
 from muster.model.problem import Problem
-from muster.model.rules import RULES
+from muster.model.rules import all_rules
 
 RETURN = "makespan-return"
 """That the makespan counts the ways to the ends of routes, `rules.makespan_includes_return`."""
 
-_WORDS = (*(word for rule in RULES for word in rule.asked), "lateness", RETURN)
+_WORDS = tuple(dict.fromkeys((*(word for rule in all_rules() for word in rule.asked.values()), "lateness", RETURN)))
 
 ALL = frozenset(_WORDS)
 """Everything that an allocator can be asked for beside what all can."""
 
-FOR_GOOD = ALL.difference(*(rule.asked for rule in RULES if not rule.for_good))
+FOR_GOOD = ALL.difference(*(rule.asked.values() for rule in all_rules() if not rule.for_good))
 """What can be asked of an allocator that never takes a task out of a route again."""
 
 BY_OBJECTIVE = frozenset({RETURN})

@@ -6,23 +6,18 @@ from collections.abc import Collection, Mapping
 from dataclasses import MISSING, fields, replace
 from typing import TypeVar
 
+from muster.mission.declared_rules import usable_rules
 from muster.mission.errors import ParameterError
-from muster.mission.records import rules_named_by
 from muster.mission.robots import Robot
-from muster.mission.stations import Station
 from muster.mission.tasks import Task
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
-_FIRST = (
-    *("prerequisite", "suitability", "skill", "lock", "capacity"),
-    *("window", "deadline", "shift", "team", "relation", "load", "battery"),
-)
-IGNORABLE = tuple(dict.fromkeys((*_FIRST, *rules_named_by(Robot, Task, Station))))
-"""The words of the first rules, and behind them those that keys of missions name as their rule's."""
+IGNORABLE = tuple(word for word, rule in usable_rules().items() if rule.ignorable)
+"""The words of the rules that are installed, those that ship first."""
 
-_AS_THEY_ARE = ("suitability", "lock", "capacity", "battery")
-_PLURALS = {f"{rule}s": rule for rule in _FIRST if rule not in _AS_THEY_ARE}
+_IN_THE_PLURAL = ("prerequisite", "skill", "window", "deadline", "shift", "team", "relation", "load")
+_PLURALS = {f"{rule}s": rule for rule in _IN_THE_PLURAL}
 """Words of earlier files and commands, read as before; and the like of the others."""
 _KEYS: Mapping[str, tuple[str, ...]] = {
     "prerequisite": ("lags",),

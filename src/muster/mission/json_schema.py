@@ -1,7 +1,7 @@
 """The published JSON Schema of mission files, made from the model.
 
-`python -m muster.mission.json_schema` prints it, with the actions of installed packages; the file beside this one has
-those that ship, and is kept equal to it by a test.
+`python -m muster.mission.json_schema` prints it, with the actions and rules of installed packages; the file beside this
+one has those that ship, and is kept equal to it by a test.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any
 from muster.mission.action_keys import ACTION_KEYS, ActionKeys
 from muster.mission.cooperation import Prerequisite, PrerequisiteOrId
 from muster.mission.model import SCHEMA, Action, Mission
-from muster.mission.records import Record, instead_of, key_of, required, specified
+from muster.mission.records import Record, all_keys, instead_of, key_of, required, specified
 from muster.mission.value_types import JsonSchema, Kind, Many
 
 
@@ -35,7 +35,7 @@ def schema_text() -> str:
 
 def _define_parts(of: type[Any], found: dict[str, JsonSchema]) -> None:
     """Add the definition of each class that a value of this one may hold."""
-    kinds = [kind for f in specified(of) for kind in (f.metadata["kind"], *(kind for _, kind, _ in instead_of(f)))]
+    kinds = [kind for f in all_keys(of) for kind in (f.metadata["kind"], *(kind for _, kind, _ in instead_of(f)))]
     for part in (record.of for kind in kinds for record in _records(kind)):
         if part.__name__ not in found:
             found[part.__name__] = _action() if part is Action else _definition(part)
@@ -52,7 +52,7 @@ def _records(kind: Kind) -> Iterator[Record]:
 
 
 def _definition(of: type[Any]) -> JsonSchema:
-    own = specified(of)
+    own = all_keys(of)
     properties = {key_of(f): _schema(f) | _described(f) for f in own}
     need = [key_of(f) for f in own if required(f) and not instead_of(f)]
     rules: list[JsonSchema] = []

@@ -130,15 +130,18 @@ class Mission(MissionData):
         return replace(self, events=(), tags=(), found=(), **changes)
 
 
-_SHOWN_IF_USED = (*shown_if_used(Robot), *shown_if_used(Task))
-
-
 def _html_table(title: str, items: Sequence[Robot] | Sequence[Task] | Sequence[Station], columns: Sequence[str]) -> str:
     """A table of robots or tasks: their ids, these columns, and those of times and teams that say something."""
-    used = [name for name in _SHOWN_IF_USED if any(getattr(item, name, None) for item in items)]
+    if_used = [*shown_if_used(Robot), *shown_if_used(Task)]
+    used = [name for name in if_used if any(_value(item, name) for item in items)]
     names = (*columns, *used)
-    rows = [(item.id, *(_in_cell(getattr(item, name)) for name in names)) for item in items]
+    rows = [(item.id, *(_in_cell(_value(item, name)) for name in names)) for item in items]
     return html_table(title, (title.lower()[:-1], *(name.replace("_", " ") for name in names)), rows)
+
+
+def _value(item: Robot | Task | Station, name: str) -> Any:
+    """The value of a field, or of a key of a rule; None: it has none."""
+    return getattr(item, name, None) if isinstance(item, Station) else item.value(name)
 
 
 def _in_cell(value: Any) -> Any:

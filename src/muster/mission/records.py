@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import MISSING, Field, dataclass, field, fields
+from dataclasses import MISSING, Field, dataclass, field, fields, replace
 from functools import partial
 from typing import Any, ClassVar, NamedTuple, TypeVar, dataclass_transform
 
@@ -90,8 +90,13 @@ def record(cls: type[C]) -> type[C]:
     """Make a class of fields made by `spec` a frozen, keyword-only dataclass whose help tells of each field."""
     made: Any = dataclass(frozen=True, kw_only=True)(cls)
     made.__init__ = _naming_unknown_fields(made.__init__, made)
-    made.__doc__ = _with_parameters(inspect.cleandoc(cls.__doc__ or ""), fields_text(specified(made)))
+    made.__doc__ = _with_parameters(inspect.cleandoc(cls.__doc__ or ""), fields_text(_told(made)))
     return cls
+
+
+def _told(cls: type[Any]) -> tuple[Field[Any], ...]:
+    """The fields of which the help of a class tells."""
+    return (*specified(cls), *(f for f in fields(cls) if "doc" in f.metadata and "kind" not in f.metadata))
 
 
 def _with_parameters(words: str, parameters: str) -> str:
@@ -119,6 +124,11 @@ def specified(cls: type[Any]) -> tuple[Field[Any], ...]:
     return _SPECIFIED[cls]
 
 
+def all_keys(cls: type[Any]) -> tuple[Field[Any], ...]:
+    """Its fields that a file may hold, and those of the classes beside it."""
+    return (*specified(cls), *(f for part in cls.beside() for f in specified(part)))
+
+
 def key_of(f: Field[Any]) -> str:
     """What files call a field."""
     return str(f.metadata.get("key", f.name))
@@ -126,12 +136,7 @@ def key_of(f: Field[Any]) -> str:
 
 def shown_if_used(cls: type[Any]) -> tuple[str, ...]:
     """The names of the fields that tables show only where some record has them."""
-    return tuple(f.name for f in specified(cls) if f.metadata["if_used"])
-
-
-def rules_named_by(*classes: type[Any]) -> tuple[str, ...]:
-    """Return the words of the rules that fields state, in the order of the fields."""
-    return tuple(f.metadata["rule"] for cls in classes for f in _naming_rules(cls))
+    return tuple(f.name for f in all_keys(cls) if f.metadata["if_used"])
 
 
 def stated_rules(value: Any) -> tuple[Field[Any], ...]:
@@ -215,6 +220,11 @@ class Checked:
         """Keys that a file may hold besides the fields, in view of its other keys; their values go into `extra`."""
         return {}
 
+    @classmethod
+    def beside(cls) -> tuple[type[Checked], ...]:
+        """The classes of which a file may hold the fields besides its own; their values go into `extra`, too."""
+        return ()
+
 
 class Settings(Checked):
     """Base of classes whose fields are parameters of a function or command: a wrong value is a `ParameterError`.
@@ -258,13 +268,15 @@ class Record:
             return value
         if type(value) is not dict and not isinstance(value, Mapping):
             refuse(self, value, at, faults)
-            return self._instance({})
+            return self.instance({})
         before = len(faults)
         keys = _keys(self.of, tuple(value))
         further = self.of.further_keys(value)
         if keys.unknown:
             faults.extend(_unknown_keys(self.of, keys.unknown, further, value, at))
-        values = _read_further(further, value, at, faults) if further else {}
+        values: dict[str, Any] = (
+            {"extra": extra} if further and (extra := read_further(self.of, value, at, faults)) else {}
+        )
         for name, kind, read_as, may_be_null in keys.fields:
             item = value.get(name, _MISSING)
             if item is _MISSING:
@@ -279,14 +291,14 @@ class Record:
             given |= self.of.settled(given)
             if whole:
                 faults.extend(Fault((*at, *f.path), f.value, f.expected) for f in self.of.cross_check(given))
-        return self._instance(given)
+        return self.instance(given)
 
     def read_column(self, values: Sequence[Any]) -> Sequence[Any] | None:
         """By groups of the same keys, and in each of them key by key."""
         kinds = set(map(type, values))
         if kinds == {self.of}:
             return values
-        if kinds != {dict} or any(map(self.of.further_keys, values)):
+        if kinds != {dict}:
             return None
         groups: dict[tuple[Any, ...], list[int]] = {}
         for k, given in enumerate(map(tuple, values)):
@@ -319,13 +331,13 @@ class Record:
                 one |= self.of.settled(one)
                 if any(self.of.cross_check(one)):
                     return None
-        return list(map(self._instance, records))
+        return list(map(self.instance, records))
 
     def schema(self) -> JsonSchema:
         """A reference to the definition that `json_schema` makes of the class."""
         return {"$ref": f"#/$defs/{self.of.__name__}"}
 
-    def _instance(self, given: dict[str, Any]) -> Any:
+    def instance(self, given: dict[str, Any]) -> Any:
         """An instance made without checks: they have just been made, and all faults are on the list.
 
         It holds what is given; for all else the class has the default.
@@ -393,10 +405,24 @@ def _unknown_keys(
     return (_unknown_key(str(key), data[key], at, hints) for key in unknown if key not in further)
 
 
-def _read_further(keys: Mapping[str, Key], data: Mapping[str, Any], at: Path, faults: list[Fault]) -> dict[str, Any]:
-    """The values of keys that are not fields, as the field `extra`; nothing where there are none."""
-    read = {key: one.kind.read(data[key], (*at, key), faults) for key, one in keys.items() if data.get(key) is not None}
-    return {"extra": {key: value for key, value in read.items() if value is not INVALID}} if read else {}
+def read_further(cls: type[Checked], data: Mapping[str, Any], at: Path, faults: list[Fault]) -> dict[str, Any]:
+    """The values of keys that are not fields, for the field `extra`."""
+    keys, before = cls.further_keys(data), len(faults)
+    given = {key: one for key, one in keys.items() if data.get(key) is not None}
+    read = {key: one.kind.read(data[key], (*at, key), faults) for key, one in given.items()}
+    if len(faults) == before:
+        for part in cls.beside():
+            faults.extend(replace(fault, path=(*at, *fault.path)) for fault in part.cross_check(_of(part, read)))
+    return {key: value for key, value in read.items() if value is not INVALID}
+
+
+def part_of(cls: type[C], extra: Mapping[str, Any]) -> C:
+    """What `extra` holds of the keys of a class, which were checked when they were read, as an instance of it."""
+    return Record(cls, cls.__name__).instance(_of(cls, extra))  # type: ignore[arg-type, no-any-return]
+
+
+def _of(cls: type[Any], extra: Mapping[str, Any]) -> dict[str, Any]:
+    return {f.name: extra[key_of(f)] for f in specified(cls) if key_of(f) in extra}
 
 
 def _unknown_key(key: str, value: object, at: Path, known: Iterable[str]) -> Fault:

@@ -8,6 +8,7 @@ from typing import Any
 from muster.mission.goods import Amount, Amounts, by_commodity
 from muster.mission.place_types import Place
 from muster.mission.records import Checked, Record, record, spec
+from muster.mission.rule_keys import RuleKeys
 from muster.mission.rules import Rules
 from muster.mission.site import IN_DEGREES, Point
 from muster.mission.stations import Battery
@@ -49,7 +50,7 @@ def _joined(shifts: Sequence[Window]) -> tuple[Window, ...]:
 
 
 @record
-class Robot(Checked):
+class Robot(RuleKeys, bearer="robot"):
     """One agent."""
 
     id: str = spec(Text(), "unique among the robots")

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from muster.mission.records import Checked, record, spec
+from muster.mission.records import record, spec
+from muster.mission.rule_keys import RuleKeys
 from muster.mission.value_types import Choice, Flag, Number, Whole
 
 OBJECTIVES = ("total+max", "total", "max", "average", "makespan", "lateness")
 
 
 @record
-class Rules(Checked):
+class Rules(RuleKeys, bearer="rules"):
     """What counts, and how."""
 
     objective: str = spec(Choice(OBJECTIVES), "what is minimised after most tasks completed", default="total+max")

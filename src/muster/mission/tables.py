@@ -10,6 +10,7 @@ from dataclasses import asdict, fields
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from muster.mission.records import Checked, all_keys, specified
 from muster.mission.system.extras import needs_extra
 
 if TYPE_CHECKING:
@@ -36,10 +37,19 @@ def frame_of_records(kind: type[Any], records: Iterable[Any]) -> DataFrame:
 
     A column of numbers that are all missing is one of numbers (NaN), as where some are.
     """
-    frame = data_frame(map(asdict, records), [f.name for f in fields(kind)])
-    numbers = [f.name for f in fields(kind) if str(f.type) in ("int | None", "float | None")]
+    of_rules = all_keys(kind)[len(specified(kind)) :] if issubclass(kind, Checked) else ()
+    columns = [*(f for f in fields(kind) if f.name != "extra"), *of_rules]
+    frame = data_frame(map(_row, records), [f.name for f in columns])
+    numbers = [f.name for f in columns if str(f.type) in ("int | None", "float | None")]
     missing = [name for name in numbers if frame[name].isna().all()]
     return frame.astype(dict.fromkeys(missing, float))
+
+
+def _row(one: Any) -> dict[str, Any]:
+    """The fields of a record, and what it says by keys of rules."""
+    own = asdict(one)
+    extra: dict[str, Any] = own.pop("extra", {})
+    return own | extra
 
 
 def html_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> str:

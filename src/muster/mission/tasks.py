@@ -12,6 +12,7 @@ from muster.mission.errors import MissionError
 from muster.mission.goods import Amount, Amounts
 from muster.mission.place_types import Corners, Place
 from muster.mission.records import Checked, Record, findings, record, spec
+from muster.mission.rule_keys import RuleKeys
 from muster.mission.site import IN_DEGREES, Point
 from muster.mission.source import IN_PYTHON
 from muster.mission.value_types import (
@@ -131,7 +132,7 @@ class Action(Checked):
 
 
 @record
-class Work(Checked):
+class Work(RuleKeys, bearer="task"):
     """What there is to do, wherever that is."""
 
     type: str | None = spec(Text(), "column of the suitability table", default=None)

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from muster.mission.mission_data import MissionData
 from muster.mission.records import key_of, specified
 from muster.mission.source import IN_PYTHON
-from muster.mission.value_types import FileForm
+from muster.mission.value_types import FileForm, Kind
 
 YAML_SUFFIXES = (".yaml", ".yml")
 """How names of mission files in YAML end."""
@@ -64,8 +64,15 @@ def plain(value: Any) -> Any:
     if hasattr(value, "__dataclass_fields__"):
         fields = specified(type(value))
         given = {key_of(f): _file_form(f, value) for f in fields if _file_value(f, value) != f.default}
-        return given | plain(getattr(value, "extra", {}))
+        return given | _further(value)
     return value
+
+
+def _further(value: Any) -> dict[str, Any]:
+    """The keys of a record beside its own."""
+    extra = getattr(value, "extra", {})
+    keys = value.further_keys(vars(value)) if extra else {}
+    return {key: _plain_of(keys[key].kind, item) for key, item in extra.items()}
 
 
 def _file_value(f: Field[Any], value: Any) -> Any:
@@ -75,8 +82,10 @@ def _file_value(f: Field[Any], value: Any) -> Any:
 
 def _file_form(f: Field[Any], value: Any) -> Any:
     """The value of a field's key as plain data."""
-    item = _file_value(f, value)
-    kind = f.metadata["kind"]
+    return _plain_of(f.metadata["kind"], _file_value(f, value))
+
+
+def _plain_of(kind: Kind, item: Any) -> Any:
     return plain(kind.file_form(item) if isinstance(kind, FileForm) and item is not None else item)
 
 

@@ -192,6 +192,12 @@ class PlanModel:
         at = np.searchsorted(closes * (1 + ROUNDING), times)
         return np.asarray(np.maximum(times, np.append(opens, math.inf)[at]))
 
+    def of_robot(self, i: int) -> object:
+        """What it says of robot i, beside the tasks that it may do and its capacity: the same for robots alike."""
+        aboard = [float(of[i]) for meter in self.meters for of in (meter.most, meter.at_start, meter.pending_at_start)]
+        energy = float(self.energy[i]), float(self.energy_at_start[i])
+        return float(self.over_by[i]), int(self.least_stops[i]), energy, tuple(aboard), self.in_team(i)
+
     def in_team(self, i: int) -> object:
         """What makes robot i the same as another in every crew."""
         if not self.with_teams:

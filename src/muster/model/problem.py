@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster import core
+from muster.mission.declared_rules import rules_in_order
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Station, Task
@@ -25,7 +26,7 @@ from muster.model.lengths import Measured
 from muster.model.measured_energy import Drains, EnergyLeft
 from muster.model.parts import Parts
 from muster.model.plan_model import PlanModel
-from muster.model.rules import RULES, Rule
+from muster.model.rules import Rule, all_rules
 from muster.model.subproblem import cut_down
 from muster.model.task_geometry import TaskGeometry
 from muster.model.travel import require_room, straight_table, travel_table
@@ -84,6 +85,7 @@ class Problem:
     mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
     waiting: Waiting = NO_WAITING  # that is expected on ways
     freed: frozenset[tuple[str, int]] = frozenset()  # words of rules, and the robots or tasks that they do not bind
+    past: Mapping[str, tuple[Task, ...]] | None = None  # of tasks that stand for what was done, that; None: it begins
     sooner: tuple[float, ...] = ()  # for each task when it must have ended, beside what rules say; empty: none
 
     @classmethod
@@ -175,13 +177,19 @@ class Problem:
         """What the rules in force come to."""
         parts = Parts(len(self.robots), len(self.tasks))
         for rule in self.rules:
+            parts.rule = rule.word
             parts.free = {number for word, number in self.freed if word == rule.word}
             rule.compile(self, parts)
-        parts.free = set()
+        parts.rule, parts.free = "", set()
         for j, latest_s in enumerate(self.sooner):
             parts.ends(j, latest_s)
         due = np.array([math.inf if task.due_s is None else task.due_s for task in self.tasks])
         return PlanModel(parts, due)
+
+    def amounts(self, of: Callable[[Task], float]) -> Floats:
+        """(n,) an amount of each task; of one that stands for what a robot has done so far, what that sums to."""
+        past = self.past or {}
+        return _floats(sum(map(of, past.get(task.id, (task,)))) for task in self.tasks)
 
     @property
     def capacity(self) -> Floats:
@@ -237,9 +245,23 @@ class Problem:
     @cached_property
     def asked(self) -> Mapping[str, str]:
         """What not every allocator can do, and the problem asks for: each with the place that does so first."""
-        found = {word: where for rule in RULES for word, where in rule.asks(self).items() if where is not None}
+        said = {word: where for rule in all_rules() for word, where in rule.asks(self).items() if where is not None}
+        word_of = {primitive: word for rule in all_rules() for primitive, word in rule.asked.items()}
+        given = {word_of[part]: rule for part, rule in self.model.parts.given_by.items() if part in word_of}
+        found = said | {word: self._stated(rule) for word, rule in given.items() if word not in said}
         late = {"lateness": "objective lateness"} if self.objective == "lateness" else {}
         return found | late | (_RETURN_ASKED if self._makespan_includes_ways_to_ends else {})
+
+    def _stated(self, rule: str) -> str:
+        """The first robot or task with a key that a rule declares, and the key; without one its word."""
+        found = (
+            f"{what} {one.id}: {key}"
+            for what, team in (("robot", self.robots), ("task", self.tasks))
+            for one in team
+            for key in one.extra
+            if key in rules_in_order()[rule].keys
+        )
+        return next(found, f"rule {rule}")
 
     @property
     def _makespan_includes_ways_to_ends(self) -> bool:
@@ -285,7 +307,7 @@ class Problem:
     @cached_property
     def rules(self) -> tuple[Rule, ...]:
         """The rules that hold."""
-        return tuple(rule for rule in RULES if not rule.ignorable or self.holds(rule.word))
+        return tuple(rule for rule in all_rules() if not rule.ignorable or self.holds(rule.word))
 
     def action_refusal(self, i: int, j: int) -> str | None:
         """Why robot i cannot do the action of task j, whatever the rules; None if it can."""
@@ -322,7 +344,7 @@ class Problem:
 
     @cached_property
     def _kind_keys(self) -> list[tuple[object, ...]]:
-        columns = [kinds for rule in RULES if (kinds := rule.kinds(self)) is not None]
+        columns = [kinds for rule in all_rules() if (kinds := rule.kinds(self)) is not None]
         return list(zip(*columns, strict=True))
 
     def _allowed_row(self, i: int) -> Bools:

@@ -137,7 +137,8 @@ class Case:
         mission = self.mission
         late = any(robot.available_until_s is not None for robot in mission.robots)
         further = any(map(stated_rules, (*mission.robots, *mission.tasks)))
-        return (late or further or self.has_goods or self.has_energy) or any(
+        foreign = any(bearer.extra for bearer in (mission.rules, *mission.robots, *mission.tasks))
+        return (late or further or foreign or self.has_goods or self.has_energy) or any(
             task.window_s
             or task.deadline_s is not None
             or task.lags

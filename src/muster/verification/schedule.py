@@ -20,7 +20,7 @@ from muster.mission.tasks import Task
 from muster.verification.broken_limits import broken_limits
 from muster.verification.measure import MeasuredRoute
 from muster.verification.no_schedule import Rising, cycle_fault
-from muster.verification.rules import RULES
+from muster.verification.rules import all_rules
 from muster.verification.rules.shift import Shifts
 from muster.verification.rules.span_rule import Span, SpanRule
 from muster.verification.schedule_nodes import Bound, Deadlock, Links, Node, Schedule, Times, is_after, names_of
@@ -40,7 +40,7 @@ def schedule(routes: Sequence[MeasuredRoute], ignored: Sequence[str], margin: fl
     would be too long otherwise. All limits are earlier by `margin`, relative, or in seconds where they are below one; a
     margin below 0 makes them later.
     """
-    kept = [rule for rule in RULES if isinstance(rule, SpanRule) and rule.holds(ignored)]
+    kept = [rule for rule in all_rules() if isinstance(rule, SpanRule) and rule.holds(ignored)]
     spans = [span for rule in kept for route in routes if route.stops for span in rule.spans(route)]
     found = Graph(routes, ignored, margin, spans).solve()
     return _without_spans(routes, ignored, margin, spans) if spans and not found.is_kept else found

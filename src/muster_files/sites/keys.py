@@ -12,7 +12,7 @@ from functools import cache, partial
 from typing import Any
 
 from muster.mission.action_keys import ACTION_KEYS
-from muster.mission.records import key_of, specified
+from muster.mission.records import all_keys, key_of
 from muster.mission.texts.packaged_files import packaged_data
 from muster.mission.value_types import Choice, Flag, Kind, Many, Number, OneOrMany, Text, Whole
 from muster_files.sites import cells, energy_cells
@@ -239,7 +239,7 @@ def _mission_keys(role: str, surveys: bool) -> Mapping[str, Kind]:
 
     classes: dict[str, type[Any]] = {"task": Task, "survey": Task, "robot": Robot, "station": Station, "zone": Zone}
     classes[CIRCLE] = Zone
-    found = {} if role not in classes else {key_of(f): f.metadata["kind"] for f in specified(classes[role])}
+    found = {} if role not in classes else {key_of(f): f.metadata["kind"] for f in all_keys(classes[role])}
     if role == "survey" and surveys:
         action = ACTION_KEYS[COVERAGE]
         of_action = {f.name: f.metadata["kind"] for f in fields(Action) if "kind" in f.metadata}

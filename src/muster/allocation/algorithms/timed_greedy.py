@@ -14,7 +14,7 @@ from muster import core
 from muster.allocation.stop import Stop
 from muster.allocation.working_roster import Routes, WorkingRoster
 from muster.model.problem import Problem
-from muster.model.rules import RULES
+from muster.model.rules import all_rules
 
 MOST_TASKS_OF_A_THOROUGH_RUN = 500
 """Up to so many tasks each step chooses among all units; beyond it, mainly among those near what was placed last."""
@@ -29,7 +29,7 @@ def append_units(problem: Problem, stop: Stop, start: Routes | None) -> Routes:
         counts = [len(route) for route in roster.routes]
         roster.finish()
         # Robots that would have had too few tasks have none now; what they left is for the others.
-        enough = [i for i in robots if not any(rule.too_few(problem, i, counts[i]) for rule in RULES)]
+        enough = [i for i in robots if not any(rule.too_few(problem, i, counts[i]) for rule in all_rules())]
         if len(enough) == len(robots):
             return roster.routes
         robots = enough

@@ -10,7 +10,6 @@ import numpy as np
 
 from muster.allocation.exact.scale import Scale, Whole
 from muster.model.problem import Bools, Floats, Problem
-from muster.model.rules import RULES
 
 Routes = Sequence[Sequence[int]]
 RealCosts = tuple[Floats, Floats, Floats, Floats]
@@ -103,7 +102,7 @@ def like_robots(problem: Problem, usable: Bools) -> list[list[int]]:
         pace = robot.speed_mps, robot.efficiency, robot.available_from_s, problem.capacity[i]
         own = i if problem.beginning(i) else -1
         parts = [usable[i], first[i], between[i], work[i], last[i], np.array(pace), np.array(own)]
-        key = b"".join(part.tobytes() for part in parts), tuple(rule.of_robot(problem, i) for rule in RULES)
+        key = b"".join(part.tobytes() for part in parts), problem.model.of_robot(i)
         groups.setdefault(key, []).append(i)
     return list(groups.values())
 

@@ -77,13 +77,22 @@ def _unloads(problem: Problem) -> bool:
 def _loads(circuits: Circuits) -> None:
     """What is on board after each task, by commodity; where stations unload, only what is going to be delivered."""
     problem = circuits.problem
-    if circuits.rules.with_teams:
-        return  # each member takes it on board: left to the cuts
     for meter in problem.model.meters:
-        if _unloads(problem):
-            _meter(circuits, meter.pending, meter.pending_at_start, meter.most)
-        else:
-            _meter(circuits, meter.change, meter.at_start, meter.most)
+        unloads = _unloads(problem)
+        change, first = (meter.pending, meter.pending_at_start) if unloads else (meter.change, meter.at_start)
+        if (change >= 0).all():
+            _sum(circuits, change, first, meter.most)
+        elif not circuits.rules.with_teams:  # each member takes it on board: left to the cuts
+            _meter(circuits, change, first, meter.most)
+
+
+def _sum(circuits: Circuits, change: Floats, first: Floats, room: Floats) -> None:
+    """What only grows is greatest at the end of a route. Amounts are rounded down to units."""
+    unit = _LOAD_UNITS / max(1e-12, float(change.max()), float(np.abs(first).max()))
+    for i in circuits.robots:
+        if np.isfinite(room[i]):
+            grows = sum(int(change[j] * unit) * does for (k, j), does in circuits.does.items() if k == i)
+            circuits.model.add(grows <= int((room[i] - first[i]) * unit) + 1)
 
 
 def _meter(circuits: Circuits, change: Floats, first: Floats, room: Floats) -> None:

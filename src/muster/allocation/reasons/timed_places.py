@@ -14,13 +14,13 @@ from muster.allocation.reasons.timed_teams import Member, TimedTeams, stop_of
 from muster.mission.ignorable_rules import IGNORABLE
 from muster.mission.model import Task
 from muster.model.problem import Problem
-from muster.model.rules import RULES
+from muster.model.rules import all_rules
 from muster.model.rules.deadline import too_late
 from muster.model.rules.rule import InPlan
 from muster.model.rules.shift import beyond
 from muster.model.rules.window import closed
 
-_RELAXED = {rule.word: rule for rule in RULES if rule.lifted_late}
+_RELAXED = {rule.word: rule for rule in all_rules() if rule.lifted_late}
 """The rules that are looked at one after the other, in the order of rules."""
 
 _MOST_PLACES = 400  # of a team, the earliest first, that are looked at
@@ -223,6 +223,8 @@ class TimedPlaces(TimedTeams):
         said = _RELAXED[word].broken_at(self.problem, i, [(place.routes, found) for place, found in left])
         if said is not None:
             return said
+        if word not in ("shift", "window", "deadline"):
+            return f"at every place in its route the rule {word} would be broken"
         if word == "shift":
             ends = (self._route_end(found, i, place.routes[i]) for place, found in left)
             own = beyond(self.problem, i, min(ends))

@@ -9,7 +9,7 @@ from typing import Any
 from muster.allocation.allocator import Routes, scheduled
 from muster.mission.plan import Plan, Route
 from muster.model.problem import Problem
-from muster.model.rules import RULES, Change
+from muster.model.rules import Change, all_rules
 from muster.model.rules.capacity import CapacityChange
 
 
@@ -66,7 +66,7 @@ class Remedy:
         """The remedy as plain data, with a key for each rule that robots can be changed for."""
         changes = {
             rule.key: self.changes[rule.word].plain if rule.word in self.changes else rule.no_change
-            for rule in RULES
+            for rule in all_rules()
             if rule.key is not None
         }
         others = ("unable", "unreachable", "impossible", "searched")

@@ -19,7 +19,7 @@ from muster.allocation.remedies.changed_problem import changed, pair_changes, wi
 from muster.allocation.remedies.remedy import Before, Remedy, more_calls
 from muster.allocation.search.witness_plans import Judge, attempt, bare_plan
 from muster.model.problem import Problem
-from muster.model.rules import RULES, Change
+from muster.model.rules import Change, all_rules
 from muster.model.rules.battery import LargerBattery
 from muster.model.rules.capacity import CapacityChange
 from muster.model.rules.deadline import LaterDeadline
@@ -81,7 +81,7 @@ def _wider(problem: Problem, first: Remedy, rest: Routes, i: int, j: int) -> Ite
     """The remedy as it is; without a rule that binds the robot; with robots that a team lacks; free of relations."""
     task, robot = problem.tasks[j], problem.robots[i]
     yield first
-    for rule in RULES:
+    for rule in all_rules():
         change = rule.lifted(problem, i) if problem.holds(rule.word) else None
         if change is not None:
             yield _with(first, rule.word, change)

@@ -162,9 +162,9 @@ def _print_unseen(unseen: tuple[Unseen, ...], errors: Sequence[Finding]) -> None
 
 def _print_never_used(mission: Mission, ignored: Collection[str]) -> None:
     """Print on standard error the robots that a rule keeps from doing anything."""
-    from muster.model.rules import RULES
+    from muster.model.rules import all_rules
 
-    for rule in RULES:
+    for rule in all_rules():
         for robot in mission.robots if rule.word not in ignored else ():
             if (why := rule.never_used(mission, robot)) is not None:
                 click.echo(f"warning: robot {robot.id}: {why}: it does none", err=True)

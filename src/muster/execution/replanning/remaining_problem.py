@@ -55,6 +55,8 @@ class RobotSnapshot:
         what it holds then; None: usage does not empty it.
     load
         what it has on board then, by commodity.
+    done
+        what it has done by then, work under way included.
     """
 
     robot: Robot
@@ -66,10 +68,11 @@ class RobotSnapshot:
     measured: EnergyLeft | None = None
     energy: Held | None = None
     load: Mapping[str, float] = field(default_factory=dict)
+    done: tuple[Task, ...] = ()
 
     @property
     def has_past(self) -> bool:
-        return self.task is not None or self.used > 0
+        return self.task is not None or self.used > 0 or bool(self.done)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,7 +169,8 @@ def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     problem = _with_energy(rest, _bearable(problem, past))
     measured = {snapshot.robot.id: snapshot.measured for snapshot in rest.crew}
     energy_left = tuple(measured[robot.id] for robot in problem.robots)
-    problem = replace(problem, aboard=_aboard(rest, problem), energy_left=energy_left)
+    done = {past[s.robot.id].id: s.done for s in rest.crew if s.robot.id in past}
+    problem = replace(problem, aboard=_aboard(rest, problem), energy_left=energy_left, past=done)
     routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
     return RemainingProblem(with_fixed_routes(_with_energy_to_end(problem, routes), Plan(routes=routes)), hopeless)
 
@@ -380,7 +384,6 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
         position=snapshot.spot.point[: mission.dimensions],
         end_position=None if snapshot.home is None else snapshot.home[: mission.dimensions],
         return_to_start=False,
-        min_tasks=0,  # what was planned kept it; what happens since may not leave so many
         work_capacity=capacity,
         load_at_start=_load_of(snapshot, rest),
         available_from_s=available_from_s,

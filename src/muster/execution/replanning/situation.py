@@ -15,7 +15,7 @@ from muster.execution.robots.station_calls import with_calls
 from muster.execution.stations.slots import AT_STATION, Stations
 from muster.execution.stations.station_service import to_add
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission, Robot
+from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Reason, Route, RouteStop, Unassigned
 from muster.mission.value_types import shown
 from muster.model.energy_under_way import Held
@@ -77,7 +77,10 @@ def remaining_mission_of(
         mission=mission,
         ignored=plan.ignored,
         now_s=now,
-        crew=[_snapshot(state, now, stations, load_after_work(state, ledger, goods)) for state in present],
+        crew=[
+            _snapshot(state, now, stations, load_after_work(state, ledger, goods), _done(state, ledger))
+            for state in present
+        ],
         tasks=[as_bound(task, bindings[task.id], ledger) for task in transported],
         ended=ledger.ends_s.keys(),
         delays_s=ledger.delays_s,
@@ -103,7 +106,15 @@ def _former(crew: Mapping[str, RobotState], under_way: Collection[str]) -> dict[
     return former
 
 
-def _snapshot(state: RobotState, now: float, stations: Stations, load: Mapping[str, float]) -> RobotSnapshot:
+def _done(state: RobotState, ledger: Ledger) -> tuple[Task, ...]:
+    """What a robot has done when its work under way is done."""
+    under_way = state.route[:1] if state.activity is Activity.WORKING else []
+    return tuple(ledger.tasks[name] for name in (*state.done, *under_way) if name in ledger.tasks)
+
+
+def _snapshot(
+    state: RobotState, now: float, stations: Stations, load: Mapping[str, float], done: tuple[Task, ...]
+) -> RobotSnapshot:
     works = state.activity is Activity.WORKING
     point = state.work.exit if works and state.work is not None else state.position
     at_task = state.activity in (Activity.WORKING, Activity.DRIVING, Activity.WAITING)
@@ -120,6 +131,7 @@ def _snapshot(state: RobotState, now: float, stations: Stations, load: Mapping[s
         measured=_measured(state),
         energy=_held(state, now, stations),
         load=load,
+        done=done,
     )
 
 

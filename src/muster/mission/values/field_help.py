@@ -28,9 +28,10 @@ def fields_text(fields: Sequence[Field[Any]]) -> str:
 
 def _lines(f: Field[Any]) -> tuple[str, str]:
     needed = f.default is MISSING and f.default_factory is MISSING
-    default = "required" if needed else f"default {_shown(f.default)}"
+    unless_given = f.default if f.default_factory is MISSING else f.default_factory()
+    default = "required" if needed else f"default {_shown(unless_given)}"
     head = f"{f.name} : {', '.join(filter(None, (str(f.type), unit_of(f), default)))}"
-    return head, f"    {f.metadata['doc']}{_choices(f.metadata['kind'])}"
+    return head, f"    {f.metadata['doc']}{_choices(f.metadata.get('kind'))}"
 
 
 def _choices(kind: object) -> str:

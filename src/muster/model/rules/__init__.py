@@ -1,49 +1,37 @@
-"""The rules of a mission, one a file, in the order in which reasons are sought.
+"""The rules of planning, one a file, in the order in which reasons are sought.
 
-A rule says what it refuses, what it proves impossible, why a task is left out of a plan, what change would lift it, and
-says that change in words. A rule is added to `RULES`; problems, proofs of impossibility, reasons, remedies and their
-phrases are loops over these. What a search has to know of a rule in its hot loop is in the core.
+A rule says what it refuses, what it comes to, what it proves impossible, why a task is left out of a plan, what change
+would lift it, and says that change in words. Problems, proofs of impossibility, reasons, remedies and their phrases are
+loops over these. Which there are is declared by packages: `muster.mission.declared_rules`.
 """
 
 from __future__ import annotations
 
-from muster.model.rules.aboard import Aboard
-from muster.model.rules.action import Action
-from muster.model.rules.battery import Battery
-from muster.model.rules.capacity import Capacity
-from muster.model.rules.deadline import Deadline
-from muster.model.rules.either_or import EitherOr
-from muster.model.rules.load import Load
-from muster.model.rules.lock import Lock
-from muster.model.rules.min_tasks import MinTasks
-from muster.model.rules.prerequisite import Prerequisite
-from muster.model.rules.relation import Relation
+from functools import cache
+
+from muster.mission.declared_rules import implemented, rules_in_order
+from muster.mission.errors import PluginError
 from muster.model.rules.rule import Change, InPlan, Outlook, Question, Rule
-from muster.model.rules.shift import Shift
-from muster.model.rules.skill import Skill
-from muster.model.rules.suitability import Suitability
-from muster.model.rules.team import Team
-from muster.model.rules.unreachable import Unreachable
-from muster.model.rules.window import Window
 
-__all__ = ["RULES", "Change", "InPlan", "Outlook", "Question", "Rule"]
+__all__ = ["Change", "InPlan", "Outlook", "Question", "Rule", "all_rules"]
 
-RULES: tuple[Rule, ...] = (
-    Skill(),
-    Action(),
-    Suitability(),
-    Lock(),
-    EitherOr(),
-    Load(),
-    Aboard(),
-    Prerequisite(),
-    Unreachable(),
-    Window(),
-    Deadline(),
-    Shift(),
-    Team(),
-    Relation(),
-    Capacity(),
-    Battery(),
-    MinTasks(),
-)
+
+@cache
+def all_rules() -> tuple[Rule, ...]:
+    """The rules of all packages, in order.
+
+    Raises
+    ------
+    PluginError
+        if one cannot be loaded, is none, or has another word than it is declared with.
+    """
+    found = []
+    for name, declared in rules_in_order().items():
+        if not declared.planning:
+            continue
+        rule = implemented(name, declared.planning)
+        if not isinstance(rule, Rule) or (declared.ignorable and rule.word != name):
+            expected = f"a muster.model.rules.Rule with the word {name}"
+            raise PluginError(f"rule {name}: {declared.planning}; expected {expected}")
+        found.append(rule)
+    return tuple(found)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -47,7 +47,7 @@ class Battery(Rule):
     """`battery` falls with usage, is filled at stations, and is never below `reserve * capacity`."""
 
     word: ClassVar[str] = "battery"
-    asked = ("battery",)
+    asked: ClassVar[Mapping[str, str]] = {"energy": "battery"}
     lifted_late = True
     of_a_route = True
     of_the_team = True
@@ -63,9 +63,6 @@ class Battery(Rule):
         for i, robot in enumerate(problem.robots):
             if robot.battery is not None:
                 parts.has_energy(i, energy_room(robot), energy_at_start(problem, i))
-
-    def of_robot(self, problem: Question, i: int) -> Hashable:
-        return problem.robots[i].battery if problem.holds(self.word) else None
 
     def possible(self, limits: Limits) -> Bools | None:
         if not any(robot.battery for robot in limits.problem.robots):

@@ -56,7 +56,7 @@ class Deadline(Rule):
     """The end of the work is at most `deadline_s`."""
 
     word: ClassVar[str] = "deadline"
-    asked = ("deadline",)
+    asked: ClassVar[Mapping[str, str]] = {"ends_by": "deadline"}
     lifted_late = True
     key = "deadline"
 

@@ -16,7 +16,7 @@ class EitherOr(Rule):
 
     word: ClassVar[str] = "either-or"
     about_one = False
-    asked = ("either-or",)
+    asked: ClassVar[Mapping[str, str]] = {"exclusive": "either-or"}
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         return {"either-or": first_task(problem, "either_or", lambda j: problem.model.exclusive[j])}

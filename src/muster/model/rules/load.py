@@ -42,7 +42,7 @@ class Load(Rule):
     """After every stop the load of each commodity is between 0 and the robot's `load_capacity`."""
 
     word: ClassVar[str] = "load"
-    asked = ("load",)
+    asked: ClassVar[Mapping[str, str]] = {"meters": "load"}
     key = "load_capacity"
     lifted_late = True
     of_a_route = True
@@ -64,9 +64,6 @@ class Load(Rule):
                 parts.deliver(j, problem.task_index[task.delivers])
         for name in names:
             parts.meter(_meter(problem, name, parts.taken_on_by))
-
-    def of_robot(self, problem: Question, i: int) -> Hashable:
-        return _carries(problem.robots[i], commodities(problem))
 
     def kinds(self, problem: Question) -> list[Hashable] | None:
         names = commodities(problem)

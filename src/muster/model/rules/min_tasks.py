@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import ClassVar
 
@@ -45,7 +45,7 @@ class MinTasks(Rule):
     """A route has no task, or at least `min_tasks_i`; a team's task counts for each of its members."""
 
     word: ClassVar[str] = "min-tasks"
-    asked = ("min-tasks",)
+    asked: ClassVar[Mapping[str, str]] = {"least_stops": "min-tasks"}
     for_good = False
     lifted_late = True
     of_a_route = True
@@ -56,12 +56,11 @@ class MinTasks(Rule):
         return {"min-tasks": first_robot(problem, "min_tasks", lambda i: int(problem.model.least_stops[i]) > 1)}
 
     def compile(self, problem: Question, parts: Parts) -> None:
+        if problem.past is not None:
+            return  # what was planned kept it; what happened since may not leave so many
         for i, robot in enumerate(problem.robots):
             if robot.min_tasks > 1:
                 parts.stops(i, min(robot.min_tasks, len(problem.tasks) + 1))
-
-    def of_robot(self, problem: Question, i: int) -> Hashable:
-        return int(problem.model.least_stops[i])
 
     def possible(self, limits: Limits) -> Bools | None:
         least = limits.problem.model.least_stops

@@ -48,7 +48,7 @@ class Relation(Rule):
 
     word: ClassVar[str] = "relation"
     about_one = False
-    asked = ("relation", "starts-with")
+    asked: ClassVar[Mapping[str, str]] = {"same_crew": "relation", "apart": "relation", "together": "starts-with"}
     key = "relation"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:

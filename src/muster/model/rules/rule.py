@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import product
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
@@ -13,7 +14,7 @@ import numpy.typing as npt
 
 from muster import core
 from muster.mission.model import Mission, Robot, Task
-from muster.model.parts import Parts
+from muster.model.parts import Meter, Parts
 from muster.model.plan_model import PlanModel
 
 Floats = npt.NDArray[np.float64]
@@ -58,6 +59,11 @@ class Question(Protocol):
     def core(self) -> core.Problem: ...
     @property
     def model(self) -> PlanModel: ...
+
+    @property
+    def past(self) -> Mapping[str, tuple[Task, ...]] | None: ...
+
+    def amounts(self, of: Callable[[Task], float]) -> Floats: ...
 
     def holds(self, rule: str) -> bool: ...
 
@@ -221,9 +227,11 @@ class Rule:
         whether it can be ignored.
     about_one
         whether it looks at one robot at a time; else at the teams that it can be in.
-    asked, for_good
-        what an allocator must be able to do to keep it, where not all can: words of `capabilities`; and whether one can
-        that never takes a task out of a route again.
+    asked
+        of primitives (fields of `Parts`) that not every allocator can keep, the word of `capabilities` for those that
+        can. Other rules that give the primitive ask for the same.
+    for_good
+        whether an allocator can keep them that never takes a task out of a route again.
     lifted_late
         whether reasons seek it among all places in a route, one such rule after the other in the order of rules.
     of_a_route, of_the_team
@@ -239,7 +247,7 @@ class Rule:
     word: ClassVar[str]
     ignorable: ClassVar[bool] = True
     about_one: ClassVar[bool] = True
-    asked: ClassVar[tuple[str, ...]] = ()
+    asked: ClassVar[Mapping[str, str]] = {}
     for_good: ClassVar[bool] = True
     lifted_late: ClassVar[bool] = False
     of_a_route: ClassVar[bool] = False
@@ -249,19 +257,18 @@ class Rule:
     no_change: ClassVar[Any] = None
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
-        """For each word of `asked` the place of a problem that asks for it first; None: none does."""
+        """For each word of `asked` the place of a problem that asks for it first; None: none does.
+
+        Where nothing is said it is a robot or task with a key that the rule declares.
+        """
         return {}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         """Contribute the primitives that it comes to."""
 
-    def of_robot(self, problem: Question, i: int) -> Hashable:
-        """What it depends on of robot i, beside the tasks that the robot may do: the same for robots that are alike."""
-        return None
-
     def kinds(self, problem: Question) -> Sequence[Hashable] | None:
         """For each robot what `refusal` depends on, beside the task; None: it refuses nobody."""
-        return None
+        return None if type(self).refusal is Rule.refusal else range(len(problem.robots))
 
     def refusal(self, problem: Question, i: int, j: int) -> str | None:
         """Why robot i may not do task j whatever its route; None if it may."""
@@ -286,7 +293,9 @@ class Rule:
 
     def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
         """How routes with one more task for robot i break it, where they break it least; None: by their times."""
-        return None
+        own = [meter for meter in problem.model.meters if meter.rule == self.word]
+        found = [above_room(problem, own, routes) for routes, _ in places]
+        return min(found, key=lambda one: one[0])[1] if own else None
 
     def never_used(self, mission: Mission, robot: Robot) -> str | None:
         """Why a robot of a mission does nothing, whatever the plan; None if it may do something."""
@@ -303,6 +312,18 @@ class Rule:
     def change(self, problem: Question, robot: Robot, task: Task) -> Change | None:
         """The least change with which the rule does not refuse the pair; None if none is needed."""
         return None
+
+
+def above_room(problem: Question, meters: Sequence[Meter], routes: Routes) -> tuple[float, str]:
+    """By how much routes are above the room of robots on meters, in all, and of the first such robot in words."""
+    above, said = 0.0, ""
+    for meter, (i, route) in product(meters, enumerate(routes)):
+        most = float(meter.most[i])
+        peak = float(meter.at_start[i] + np.cumsum(meter.change[route]).max(initial=0.0))
+        if peak > most:
+            above += peak - most
+            said = said or f"with it {problem.robots[i].id} would have {peak:g} {meter.name}, and has room for {most:g}"
+    return above, said or "at every place in its route it would be broken"
 
 
 def first_task(problem: Question, key: str, has: Callable[[int], object]) -> str | None:

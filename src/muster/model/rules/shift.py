@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import ClassVar
 
@@ -60,7 +60,7 @@ class Shift(Rule):
     """The end of the route is at most `available_until_s`."""
 
     word: ClassVar[str] = "shift"
-    asked = ("shift",)
+    asked: ClassVar[Mapping[str, str]] = {"over_by": "shift"}
     lifted_late = True
     key = "shift"
 
@@ -72,9 +72,6 @@ class Shift(Rule):
         for i, robot in enumerate(problem.robots):
             if robot.available_until_s is not None:
                 parts.is_over(i, robot.available_until_s)
-
-    def of_robot(self, problem: Question, i: int) -> Hashable:
-        return float(problem.model.over_by[i])
 
     def possible(self, limits: Limits) -> Bools | None:
         if not limits.is_timed:

@@ -43,7 +43,7 @@ class Team(Rule):
 
     word: ClassVar[str] = "team"
     about_one = False
-    asked = ("team",)
+    asked: ClassVar[Mapping[str, str]] = {"seats": "team", "sums": "team"}
     key = "team"
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
@@ -67,9 +67,6 @@ class Team(Rule):
                 )
             elif not task.needs:
                 parts.seat(j, [(task.robots_needed or 1, everybody)])
-
-    def of_robot(self, problem: Question, i: int) -> Hashable:
-        return problem.model.in_team(i)
 
     def kinds(self, problem: Question) -> Sequence[Hashable] | None:
         if not problem.model.with_teams:

@@ -52,7 +52,7 @@ class Window(Rule):
     """The begin of the work is in one of `window_s`. A robot that is too early waits for the next one."""
 
     word: ClassVar[str] = "window"
-    asked = ("window",)
+    asked: ClassVar[Mapping[str, str]] = {"openings": "window"}
     lifted_late = True
     key = "window"
 

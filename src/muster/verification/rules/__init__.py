@@ -1,4 +1,4 @@
-"""The rules of the judge, one a file. A file in this folder that has a rule is all that a new rule needs here.
+"""The rules of the judge, one a file. Which there are is declared by packages: `muster.mission.declared_rules`.
 
 A rule finds what is wrong with a route, and says whether it keeps a robot from one more task. The judge asks the latter
 of the reasons that a plan gives for tasks left out. Which limits of times are broken, and that routes and prerequisites
@@ -8,11 +8,11 @@ wait for each other in a cycle, is found by `schedule`, which all routes enter a
 from __future__ import annotations
 
 from collections.abc import Iterator
-from importlib import import_module
-from inspect import isabstract
-from pkgutil import iter_modules
+from functools import cache
 from typing import Protocol
 
+from muster.mission.declared_rules import implemented, rules_in_order
+from muster.mission.errors import PluginError
 from muster.mission.model import Task
 from muster.verification.case import Case
 from muster.verification.measure import MeasuredRoute
@@ -41,27 +41,26 @@ class Rule(Protocol):
         ...
 
 
-_FIRST = (
-    *("skill", "action", "suitability", "lock", "team", "relation", "prerequisite", "closed_area"),
-    *("unreachable", "capacity", "load", "battery", "window", "deadline", "shift"),
-)
-"""The files of the rules whose violations are listed first; those of all others follow by name."""
+@cache
+def all_rules() -> tuple[Rule, ...]:
+    """The judge's reading of the rules of all packages, in order.
 
-
-def _found() -> Iterator[Rule]:
-    """The rules in the files of this folder: classes that say what is wrong with a route."""
-    names = sorted(module.name for module in iter_modules(__path__))
-    for name in sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST)):
-        module = import_module(f"{__name__}.{name}")
-        for made in vars(module).values():
-            is_own = isinstance(made, type) and made.__module__ == module.__name__
-            if is_own and hasattr(made, "violations") and not isabstract(made):
-                yield made()
-
-
-RULES: tuple[Rule, ...] = tuple(_found())
+    Raises
+    ------
+    PluginError
+        if one cannot be loaded, or is of another kind than it is declared.
+    """
+    found: list[Rule] = []
+    for name, declared in rules_in_order().items():
+        rule = implemented(name, declared.judge)
+        if declared.ignorable and getattr(rule, "kind", None) != name:
+            raise PluginError(
+                f"rule {name}: {declared.judge}; expected a muster.verification.rules.Rule of kind {name}"
+            )
+        found.append(rule)
+    return tuple(found)
 
 
 def rules_that_hold(case: Case) -> list[Rule]:
     """All rules but those that are ignored."""
-    return [rule for rule in RULES if not rule.ignorable or case.holds(rule.kind)]
+    return [rule for rule in all_rules() if not rule.ignorable or case.holds(rule.kind)]

@@ -10,12 +10,29 @@ from nicegui import background_tasks, ui
 
 from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import OBJECTIVES, Robot, Rules, Station, Task
-from muster.mission.records import instead_of, specified
-from muster.mission.value_types import Number, Whole
+from muster.mission.records import Checked, all_keys, instead_of, key_of, specified
+from muster.mission.value_types import Choice, Flag, Number, Whole
 from muster_control.pages.editing.cell_texts import text_of, value_of
 from muster_control.pages.editing.draft import Draft
 from muster_control.pages.editing.table import Column, Table
 from muster_control.pages.notices import warn, words_of
+
+
+def _of_rules(model: type[Checked]) -> tuple[Column, ...]:
+    """The columns of the keys that rules of other packages bring."""
+    return tuple(_column(key_of(f), f.metadata["kind"]) for part in model.beside() for f in specified(part))
+
+
+def _column(key: str, kind: object) -> Column:
+    match kind:
+        case Number() | Whole():
+            return Column(key, "number")
+        case Flag():
+            return Column(key, "choice", ("true", "false"))
+        case Choice():
+            return Column(key, "choice", tuple(kind.words))
+    return Column(key)
+
 
 _PLACE = (Column("x", "number", hint="metres east"), Column("y", "number", hint="metres north"))
 _HEIGHT = Column("z", "number", hint="metres above the ground of the map")
@@ -44,6 +61,7 @@ _ROBOT_TIMES = (
     ),
     *(Column(key, "number") for key in ("acceleration_mps2", "yaw_rate_radps", "climb_mps")),
     Column("abilities", "amounts", hint="as lift_kg 20, water_l 3"),
+    *_of_rules(Robot),
 )
 _TASK_TIMES = (
     Column("window", "clock spans", hint="as 10:00 to 14:00; 16:00 to, beside starts_at"),
@@ -58,6 +76,7 @@ _TASK_TIMES = (
     Column("same_robot_as", "words"),
     Column("other_robot_than", "words"),
     Column("starts_with", "words"),
+    *_of_rules(Task),
 )
 _ROBOT_GOODS = (
     Column("load_capacity", "loads", hint="as 10, or parcels 4, water_l 10"),
@@ -84,6 +103,7 @@ _RULES = (
     Column("return_to_start", "choice", ("true", "false")),
     Column("timing", "choice", ("profile", "constant")),
     Column("makespan_includes_return", "choice", ("true", "false")),
+    *_of_rules(Rules),
 )
 _SHOWN = {"rules": "rules", "robot": "robots", "task": "tasks", "station": "stations"}
 _AXES = {"x": 0, "y": 1, "z": 2}
@@ -96,7 +116,7 @@ _AMOUNTS = {column.key for column in _COLUMNS.values() if column.kind in ("amoun
 
 def _explained(model: type[Any], columns: Sequence[Column]) -> tuple[Column, ...]:
     """Columns with what the format says of their keys."""
-    words = {one.name: str(one.metadata["doc"]) for one in specified(model)}
+    words = {one.name: str(one.metadata["doc"]) for one in all_keys(model)}
     for one in specified(model):
         words |= {key: doc for key, _, doc in instead_of(one)}
     return tuple(
