@@ -240,12 +240,13 @@ def _past(rest: RemainingMission) -> dict[str, Task]:
 
 def _past_task(rest: RemainingMission, snapshot: RobotSnapshot, name: str) -> Task:
     in_time = rest.mission.rules.usage == "time"
-    lasts = snapshot.used if in_time else max(0.0, snapshot.free_s - rest.now_s)
+    used = max(0.0, snapshot.used)  # a count that is resumed may begin below 0
+    lasts = used if in_time else max(0.0, snapshot.free_s - rest.now_s)
     return Task(
         id=name,
         type=None if rest.mission.suitability is None else SO_FAR,
         position=snapshot.spot.point[: rest.mission.dimensions],
-        actuation_cost=0.0 if in_time else snapshot.used,
+        actuation_cost=0.0 if in_time else used,
         duration_s=lasts * snapshot.robot.efficiency,
     )
 
