@@ -281,7 +281,7 @@ def test_a_script_reads_orders_one_ahead_and_gives_them_in_batches():
     assert script.next_s == 1.0
     assert [event.cancel_task for event in script.due(1.0)] == ["0.3", "0.6", "0.9"]
     assert script.next_s == 2.0
-    assert Script([], [Event(at_s=1, cancel_task="a")], after_s=1.0).next_s == math.inf
+    assert Script([], [Event(at_s=1, cancel_task="a")], since_s=1.0).next_s == math.inf
 
 
 def test_a_log_keeps_the_last_events_under_their_numbers():

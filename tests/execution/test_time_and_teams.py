@@ -9,12 +9,14 @@ from tests.execution.world import World, carry_out
 from muster import Mission, Robot, Rules, Task
 from muster.execution.executor import Executor
 from muster.execution.replanning.reallocation import Revision
+from muster.execution.replanning.remaining_problem import remaining_problem
+from muster.execution.replanning.travel import travel_of
 from muster.execution.reports.report import report_of
 from muster.execution.status import status_of
-from muster.execution.timing.teams import lacking
 from muster.mission.errors import ParameterError
 from muster.mission.model import DelayedTask, Event, Lag, TeamPart
 from muster.mission.plan import Reason, Unassigned
+from muster.model.under_way import UnderWay
 from muster.state import MissionState
 from muster.state.run_events import PlanAdopted
 from muster.state.task_events import Ends
@@ -41,7 +43,7 @@ def keeping(rest):
             for name, robot in crew.items()
             if one.id in routes[name] and name not in rest.refusals.get(one.id, {})
         ]
-        if one.id in rest.expired or lacking(one, able):
+        if one.id in rest.expired or UnderWay(rest.mission, ()).lacking(one, able):
             able = []
         for name, route in routes.items():
             routes[name] = tuple(other for other in route if other != one.id or crew[name] in able)
@@ -220,6 +222,37 @@ def test_ignored_rules_do_not_hold():
     mission = mission_of(task("a", robots_needed=2, window_s=((500.0, 600.0),), deadline_s=3.0), robots=1)
     plan = replace(plan_of(r_0=["a"]), ignored=("window", "team", "deadline"))
     assert list(carried_out(mission, plan, replan=keeping).ledger.ends_s) == ["a"]
+
+
+def test_tasks_follow_soon_in_what_is_left_even_where_windows_are_ignored():
+    after = {"prerequisites": ("a",), "lags": {"a": Lag(after_s=5.0, within_s=50.0)}}
+    mission = mission_of(task("a", window_s=((500.0, 600.0),)), task("b", x=90.0, **after), robots=1)
+    for ignored, bound in ((("window",), True), (("window", "prerequisite"), False)):
+        world = World(mission)
+        executor = Executor(mission, replace(plan_of(r_0=["a", "b"]), ignored=ignored), world.ports, replan=keeping)
+        carry_out(executor, world, until=20)
+        ended_s = executor.ledger.ends_s["a"]
+        problem = remaining_problem(executor._rest(), travel_of(mission)).problem
+        openings = problem.model.openings[problem.task_index["b"]]
+        assert openings == ([(ended_s + 5, ended_s + 50)] if bound else [])
+
+
+def test_a_part_that_asks_for_a_skill_takes_any_robot_where_skills_are_ignored():
+    mission = mission_of(task("look", team=(TeamPart(count=2, requires=("camera",)),)))
+    for ignored, done in (((), []), (("skill",), ["look"])):
+        plan = replace(plan_of(r_0=["look"], r_1=["look"]), ignored=ignored)
+        assert list(carried_out(mission, plan, replan=keeping).ledger.ends_s) == done
+
+
+def test_a_new_task_that_begins_with_one_tied_to_a_task_that_is_cancelled_can_never_begin():
+    events = [
+        Event(at_s=1.0, cancel_task="a"),
+        Event(at_s=2.0, new_task=task("c", starts_with=("b",))),
+    ]
+    mission = mission_of(task("a", x=9.0), task("b", x=9.0, starts_with=("a",)), robots=2, events=events)
+    executor = carried_out(mission, plan_of(r_0=["a"], r_1=["b"]), replan=keeping)
+    assert executor.lost()["c"] == "relation: begins with a, which is cancelled"
+    assert executor.ledger.unit("c") == ("c",)
 
 
 def test_a_task_of_one_robot_stands_in_one_route():

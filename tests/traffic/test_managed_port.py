@@ -7,7 +7,7 @@ import pytest
 from muster import Robot
 from muster.motion.port import Telemetry, Waypoint
 from muster.traffic.journeys.travellers import Move
-from muster.traffic.reservation.reserved import BROKEN_AFTER_S, TRIED_AFTER_S, ReservedTraffic
+from muster.traffic.reservation.reserved import NO_PROGRESS_S, RETRY_S, ReservedTraffic
 
 GOAL = (9.0, 0.0, 0.0)
 
@@ -71,22 +71,22 @@ def traffic():
 
 
 def test_who_stands_though_it_may_drive_is_told_anew_and_again(traffic):
-    traffic.go_on(BROKEN_AFTER_S + 0.5, speed=0.0)
+    traffic.go_on(NO_PROGRESS_S + 0.5, speed=0.0)
     assert (traffic.times_sent, traffic.drive.sent[-1][-1].position) == (1, GOAL)  # what it was told holds
-    traffic.go_on(TRIED_AFTER_S, speed=0.0)
+    traffic.go_on(RETRY_S, speed=0.0)
     assert traffic.times_sent == 2
-    traffic.go_on(BROKEN_AFTER_S + TRIED_AFTER_S + 1.0, speed=0.0)
+    traffic.go_on(NO_PROGRESS_S + RETRY_S + 1.0, speed=0.0)
     assert traffic.times_sent == 3
 
 
 def test_who_moves_again_is_planned_again_from_where_it_is(traffic):
-    traffic.go_on(BROKEN_AFTER_S + 0.5, speed=0.0)
+    traffic.go_on(NO_PROGRESS_S + 0.5, speed=0.0)
     traffic.go_on(1.0, speed=0.5)
     assert traffic.times_sent == 2
 
 
 def test_who_drives_is_not_told_anew(traffic):
-    traffic.go_on(2 * BROKEN_AFTER_S, speed=0.5)
+    traffic.go_on(2 * NO_PROGRESS_S, speed=0.5)
     assert traffic.times_sent == 1
     assert not any(traffic.fixed)
 
@@ -95,7 +95,7 @@ def test_who_drops_the_order_to_work_at_its_goal_is_told_anew(traffic):
     traffic.go_on(GOAL[0] / 0.5, speed=0.5)
     traffic.drive.x = GOAL[0]
     before = len(traffic.drive.sent)
-    traffic.go_on(BROKEN_AFTER_S + TRIED_AFTER_S + 2.0, speed=0.0)
+    traffic.go_on(NO_PROGRESS_S + RETRY_S + 2.0, speed=0.0)
     assert [way[-1].position for way in traffic.drive.sent[before:] if way] == [
         GOAL,
         GOAL,

@@ -18,15 +18,16 @@ from muster.execution.robots.work_orders import delayed, least_s, least_usage, s
 from muster.execution.stations.energy_watch import EnergyWatch
 from muster.execution.stations.slots import AT_STATION
 from muster.execution.stations.station_service import StationService
-from muster.execution.timing.beginning import Beginning, next_begin
+from muster.execution.timing.beginning import Beginning
 from muster.execution.timing.duty import back_s, over_by_s
+from muster.mission.system.clock import TIME_ROUNDING_S
+from muster.model.rules.team import waits_for_team, waits_to_start_with
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 from muster.state import MissionState
 from muster.state.robot_events import NoWayToEnd, Returns, RobotAtEnd, RobotGoesRound, RobotMakesRoom
 from muster.state.station_events import StationUnreachable
 from muster.state.task_events import Arrives, Ends, SetsOut, Starts, TaskRefused, Waits
-from muster.state.task_ledger import TIME_ROUNDING_S
 
 
 class Dispatch:
@@ -346,7 +347,7 @@ class Dispatch:
         if earliest_s == math.inf:
             return
         unit = self._ledger.unit(task)
-        opens = partial(next_begin, [self._ledger.tasks[name] for name in unit])
+        opens = partial(self._ledger.model.next_begin_s, unit)
         found = peers.gather(task, unit, earliest_s, state.work_s, opens)
         late = self._too_late(state, task, earliest_s if found.begin_s == math.inf else found.begin_s)
         if late:
@@ -363,25 +364,19 @@ class Dispatch:
             self._emit(Waits(robot=state.robot.id, task=task, cause=cause, words=words))
 
     def _too_late(self, state: RobotState, task: str, begin_s: float, leaves_s: float = math.inf) -> str:
-        """Why a robot that is at a task at a time cannot do it, by window, deadline, shift or duty; else empty."""
-        what = self._ledger.tasks[task]
-        begin_s, arrive_s = next_begin([what], begin_s), begin_s
-        if begin_s == math.inf:
-            return f"window: would arrive at {arrive_s:,.1f} s, after it has closed"
-        begin_s = state.robot.set_out(begin_s, state.work_s)
-        if begin_s == math.inf:
-            return "shift: no shift left lasts as long as the work"
-        ends_s, deadline = begin_s + state.work_s, what.deadline_s
-        if deadline is not None and ends_s > deadline + TIME_ROUNDING_S:
-            return f"deadline: would end at {ends_s:,.1f} s, after {deadline:,g} s"
-        until, back = state.robot.available_until_s, back_s(state, ends_s, state.home_s)
+        """Why a robot that is at a task at a time cannot do it, by its times and the robot's; else empty."""
+        works_s = state.robot.set_out(self._ledger.model.next_begin_s([task], begin_s), state.work_s)
+        late = self._ledger.model.too_late(task, state.robot, begin_s, state.work_s, state.home_s)
+        if late or works_s == math.inf:
+            return late or "shift: no shift left lasts as long as the work"
+        back = back_s(state, works_s + state.work_s, state.home_s)
         if back == math.inf:
             return "shift: no shift left lasts as long as the way to its end"
-        if until is not None and back > until + TIME_ROUNDING_S:
-            return f"shift: would be back at {back:,.1f} s, after {until:,g} s"
-        if back > (over_s := over_by_s(state, leaves_s)) + TIME_ROUNDING_S:
-            return f"duty: would be back at {back:,.1f} s, after {over_s:,g} s"
-        return ""
+        rest_s = back - works_s - state.work_s  # breaks included
+        late = self._ledger.model.too_late(task, state.robot, works_s, state.work_s, rest_s)
+        if late or back <= (over_s := over_by_s(state, leaves_s)) + TIME_ROUNDING_S:
+            return late
+        return f"duty: would be back at {back:,.1f} s, after {over_s:,g} s"
 
     def _work(self, task: str, team: Sequence[RobotState], now: float) -> None:
         for state in team:
@@ -473,6 +468,6 @@ def _words_for_absent(task: str, absent: Sequence[tuple[str, str]]) -> tuple[str
     """The cause of waiting for robots elsewhere, and the words for it."""
     own = [robot for robot, name in absent if name == task]
     if own:
-        return "team", f"waits for team: {', '.join(own)}"
+        return "team", waits_for_team(", ".join(own))
     first = absent[0][1]
-    return "start", f"waits for start with {first}: {', '.join(robot for robot, name in absent if name == first)}"
+    return "start", waits_to_start_with(first, ", ".join(robot for robot, name in absent if name == first))

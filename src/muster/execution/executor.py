@@ -25,7 +25,7 @@ from muster.execution.replanning.remaining_problem import RemainingMission
 from muster.execution.replanning.situation import remaining_mission_of, required_routes, whole_plan
 from muster.execution.replanning.travel import Travel, travel_of
 from muster.execution.reports.report import Account
-from muster.execution.reports.work_figures import back_s, planned_so_far, robot_row, shifts_exceeded_s
+from muster.execution.reports.work_figures import back_s, overtime_s, planned_so_far, robot_row
 from muster.execution.robots.monitor import Limits, moves_again
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.task_motion import MotionPlanner, Way, straight
@@ -373,7 +373,7 @@ class Executor:
             self.mission.events,
             standing.orders,
             batch_s=standing.batch_s,
-            after_s=time_s,
+            since_s=time_s,
             until_s=standing.takes_orders_until_s,
         )
 
@@ -521,7 +521,7 @@ class Executor:
             mission_time_s=over_s - self.begun_s,
             reallocations=self.state.replanned,
             orders=self.orders.report(self.now_s - self.begun_s, self._script.not_taken_from_s, self.clock_lag),
-            shifts_exceeded_s=shifts_exceeded_s(self._worked, self.now_s),
+            overtime_s=overtime_s(self._worked, self.ledger.model, self.now_s),
             traffic=self.traffic.with_waits(self.state.traffic),
             waits_s=self._punctuality.waits_s,
             back_s=back_s(self._worked) if self.mission.rules.makespan_includes_return else (),

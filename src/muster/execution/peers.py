@@ -49,7 +49,7 @@ class Peers(Protocol):
         earliest_s, lasts_s
             when the robot could begin at the earliest, and how long its part takes.
         next_begin
-            the earliest time, not before a given one, at which windows of all these tasks are open.
+            the earliest time, not before a given one, at which all these tasks may begin.
         """
         ...
 

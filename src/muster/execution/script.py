@@ -24,8 +24,8 @@ class Script:
         events in order of time; one that comes late happens when it is read.
     batch_s
         orders are due together, at whole multiples of so many seconds; 0: each when it comes.
-    after_s
-        what was due by then has happened before.
+    since_s
+        what was due by this time has happened before.
     until_s
         orders after it are not taken, and none is read after the first of them.
 
@@ -41,12 +41,12 @@ class Script:
         orders: Iterable[Event] = (),
         *,
         batch_s: float = 0.0,
-        after_s: float = -math.inf,
+        since_s: float = -math.inf,
         until_s: float = math.inf,
     ) -> None:
         self._batch_s, self._until_s = batch_s, until_s
-        self._events = sorted((e for e in events if e.at_s > after_s), key=lambda event: event.at_s)
-        self._orders = (order for order in checked_orders(orders) if order.at_s > after_s)
+        self._events = sorted((e for e in events if e.at_s > since_s), key=lambda event: event.at_s)
+        self._orders = (order for order in checked_orders(orders) if order.at_s > since_s)
         self._not_taken_from_s: float | None = None
         self._next = self._read()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations
 from operator import attrgetter
 
@@ -56,6 +57,12 @@ def units_of(tasks: Collection[Task]) -> dict[str, tuple[str, ...]]:
     for task, first in zip(listed, tied, strict=True):
         units.setdefault(first, []).append(task.id)
     return {task.id: tuple(units[first]) for task, first in zip(listed, tied, strict=True)}
+
+
+def beginning_apart(task: Task, others: Collection[str]) -> Task:
+    """The task, which does not begin together with others."""
+    left = tuple(name for name in task.starts_with if name not in others)
+    return task if left == task.starts_with else replace(task, starts_with=left)
 
 
 def alternatives_of(tasks: Collection[Task]) -> list[tuple[str, ...]]:

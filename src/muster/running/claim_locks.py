@@ -39,7 +39,7 @@ def robots_claimed(claims: Collection[str], wait_s: float = 0.0) -> Iterator[Non
     """
     try:
         import fcntl
-    except ImportError:  # Windows: no bridge but MAVLink's runs there, and a port of UDP has one owner
+    except ImportError:  # not a POSIX system: no bridge but MAVLink's runs here, and a port of UDP has one owner
         yield
         return
     file = data_folder() / "robots.lock"

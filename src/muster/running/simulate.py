@@ -37,7 +37,7 @@ def simulated(mission: Mission, plan: Plan | Coordination, request: ObservedRun)
         if a route enters an area that is closed to its robot.
     ParameterError
         if the plan names robots or tasks that the mission does not have; if a film of another world is asked for; if a
-        negotiation is to keep time windows, deadlines, shifts, lags, teams, relations or lateness.
+        negotiation is to keep rules of times, teams or relations that robots cannot agree on, or lateness.
     InputError, RenderingError
         before the run, if a film cannot have that suffix, or nothing can draw it on this machine.
     MissingExtraError

@@ -10,11 +10,15 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
+from typing import TYPE_CHECKING
 
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission, Robot, Task
+from muster.mission.model import Mission
 from muster.mission.system.clock import Clock, WallClock
 from muster.mission.texts.counting import counted
+
+if TYPE_CHECKING:
+    from muster.model.under_way import UnderWay
 
 STARTS = ("given", "now")
 """When a mission starts: as its `starts_at` says, or when the run begins, with all its times shifted."""
@@ -66,12 +70,13 @@ class MissionStart:
 def require_time_left(mission: Mission, now_s: float) -> None:
     """Raise `ParameterError` if the time of a mission is over at a time of its clock.
 
-    It is over when no task that has a time limit can begin any more, or all robots' shifts have ended.
+    It is over when no task that has a time limit can begin any more, or all robots had to be back by now.
     """
-    if all(_has_ended(robot, now_s) for robot in mission.robots):
+    model = _model_of(mission)
+    if all(now_s >= model.over_by_s(robot) for robot in mission.robots):
         over = "the shifts of all robots have ended"
     else:
-        limits = {task.id: latest for task in mission.tasks if (latest := _latest_s(task)) < math.inf}
+        limits = {task.id: latest for task in mission.tasks if (latest := model.last_begin_s(task.id)) < math.inf}
         late = [task for task, latest in limits.items() if now_s > latest]
         if not limits or len(late) < len(limits):
             return
@@ -83,16 +88,18 @@ def require_time_left(mission: Mission, now_s: float) -> None:
 
 
 def has_time_limits(mission: Mission) -> bool:
-    """Return whether any task can come too late, or any shift ends."""
-    ends = any(robot.available_until_s is not None for robot in mission.robots)
-    return ends or any(_latest_s(task) < math.inf for task in mission.tasks)
+    """Return whether any task can come too late, or any robot has to be back by some time."""
+    model = _model_of(mission)
+    limits_s = [*map(model.over_by_s, mission.robots), *(model.last_begin_s(task.id) for task in mission.tasks)]
+    return min(limits_s, default=math.inf) < math.inf
 
 
 def notes_on_start(mission: Mission, now_s: float) -> Iterator[str]:
     """Yield lines about a start that is not now: how long the run waits, or which tasks come too late."""
     if now_s < 0:
         yield f"the mission starts at {mission.starts_at}: robots wait for {_duration(-now_s)}"
-    late = [task.id for task in mission.tasks if now_s > _latest_s(task)]
+    model = _model_of(mission)
+    late = [task.id for task in mission.tasks if now_s > model.last_begin_s(task.id)]
     if late:
         began = f"starts_at {mission.starts_at} was {_duration(now_s)} ago"
         yield f"warning: {began}: the time for {_some(late)} is over"
@@ -102,25 +109,15 @@ def planned_from(mission: Mission, now_s: float) -> Mission:
     """Return the mission for planning at a time of its clock: no robot is available before."""
     if now_s <= 0:
         return mission
-    return replace(mission, robots=tuple(_available_from(robot, now_s) for robot in mission.robots))
+    model = _model_of(mission)
+    until_s = [(robot, model.over_by_s(robot)) for robot in mission.robots]
+    return replace(mission, robots=tuple(robot.from_time(min(now_s, by_s)) for robot, by_s in until_s))
 
 
-def _available_from(robot: Robot, now_s: float) -> Robot:
-    until_s = robot.available_until_s
-    if robot.shifts_s:
-        return robot.from_time(now_s if until_s is None else min(now_s, until_s))
-    begins_s = max(robot.available_from_s, now_s)
-    return replace(robot, available_from_s=begins_s if until_s is None else min(begins_s, until_s))
+def _model_of(mission: Mission) -> UnderWay:
+    from muster.model.under_way import UnderWay  # with NumPy, without which servers know when missions start
 
-
-def _has_ended(robot: Robot, now_s: float) -> bool:
-    return robot.available_until_s is not None and now_s >= robot.available_until_s
-
-
-def _latest_s(task: Task) -> float:
-    """The latest time at which work on a task may begin, travel and work not counted."""
-    last = task.window_s[-1][1] if task.window_s else None
-    return min(math.inf if last is None else last, math.inf if task.deadline_s is None else task.deadline_s)
+    return UnderWay(mission, mission.tasks)
 
 
 def _some(tasks: Sequence[str]) -> str:

@@ -36,9 +36,9 @@ _KEPT: Mapping[str, Any] = {
     "done_twice": dict[str, tuple[str, ...]],
 }
 """What a checkpoint has of a state, and the types, but for robots, doors and the ledger of tasks."""
-_DERIVED = ("tasks", "touched", "needs_order", "ignored", "_units", "_must_follow")
+_DERIVED = ("mission", "ignored", "tasks", "touched", "_model")
 """What it has of the ledger otherwise, or not at all."""
-_LEDGER = {name: of for name, of in get_type_hints(Ledger).items() if name not in _DERIVED}
+_LEDGER = {name: of for name, of in get_type_hints(Ledger, localns={"UnderWay": Any}).items() if name not in _DERIVED}
 _ROBOT = {name: of for name, of in get_type_hints(KnownRobot).items() if name != "robot"}
 
 

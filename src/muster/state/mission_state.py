@@ -84,7 +84,7 @@ class MissionState:
         self.begun_s: float | None = None
         self.ended_s: float | None = None
         self.zero_s: float | None = None
-        self.ledger = Ledger.of(mission.tasks, "prerequisite" not in ignored, ignored)
+        self.ledger = Ledger.of(mission, ignored)
         self.goods, self.orders, self.traffic = GoodsLedger(), Orders(), TrafficAccount()
         self.robots: dict[str, KnownRobot] = {}
         for robot in mission.robots:

@@ -21,6 +21,11 @@ def was_cancelled(reason: object) -> bool:
     return str(reason).startswith(_CANCELLED)
 
 
+def begins_with(other: str) -> str:
+    """Why a task cannot begin if another cannot; how that one cannot follows."""
+    return f"relation: begins with {other}"
+
+
 def some_of(names: Sequence[str]) -> str:
     """Return a few names, and how many more there are."""
     left = len(names) - MOST_NAMED

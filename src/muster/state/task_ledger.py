@@ -5,20 +5,20 @@ Entries are removed only of standing fleets, and live on in sums (`Retired`).
 
 from __future__ import annotations
 
-import math
-from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from muster.mission.goods import as_amount
 from muster.mission.ignorable_rules import as_it_holds
-from muster.mission.model import Point, Robot, Task
-from muster.mission.task_relations import units_of
-from muster.state.reasons import cancelled_at, some_of
+from muster.mission.model import Mission, Point, Robot, Task
+from muster.mission.system.clock import TIME_ROUNDING_S
+from muster.mission.task_relations import beginning_apart
+from muster.state.reasons import begins_with, cancelled_at, some_of
 
-TIME_ROUNDING_S = 1e-6
-"""By which a time may be past a limit: clocks add up steps."""
+if TYPE_CHECKING:
+    from muster.model.under_way import UnderWay
+
 KEPT_LOST = 20
 """How many tasks that were lost and forgotten are still listed with the reason: the last ones."""
 
@@ -78,17 +78,17 @@ class Ledger:
 
     Parameters
     ----------
-    tasks
-        every task that there is or was, in order of appearance.
-    needs_order
-        whether prerequisites hold.
+    mission
+        whose rules hold.
     ignored
         rules that do not hold: tasks are kept without them.
+    tasks
+        every task that there is or was, in order of appearance.
     """
 
-    tasks: dict[str, Task]
-    needs_order: bool
+    mission: Mission
     ignored: Collection[str] = ()
+    tasks: dict[str, Task] = field(default_factory=dict)
     delays_s: dict[str, float] = field(default_factory=dict)
     arrivals_s: dict[str, float] = field(default_factory=dict)
     arrival_usage: dict[str, float] = field(default_factory=dict)  # of the robot, when it came to the task
@@ -107,28 +107,42 @@ class Ledger:
     retired: Retired = field(default_factory=Retired)
     touched: dict[str, None] = field(default_factory=dict)  # tasks that the last event has brought on, or moved
     revision: int = 0  # how often tasks came, went or were opened again
-    _units: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    _must_follow: dict[str, list[str]] | None = None  # by task: those that must begin within some time after it
+    _model: UnderWay | None = None
 
     @classmethod
-    def of(cls, tasks: Iterable[Task], needs_order: bool, ignored: Collection[str] = ()) -> Ledger:
-        ledger = cls({}, needs_order, ignored)
-        for task in tasks:
+    def of(cls, mission: Mission, ignored: Collection[str] = ()) -> Ledger:
+        ledger = cls(mission, ignored)
+        for task in mission.tasks:
             ledger.add(task)
         return ledger
+
+    @property
+    def model(self) -> UnderWay:
+        """What rules ask of the tasks as they are now."""
+        if self._model is None:
+            from muster.model.under_way import UnderWay  # with NumPy, without which events are known and said
+
+            self._model = UnderWay(self.mission, tuple(self.tasks.values()), self.ignored)
+        return self._model
 
     def add(self, task: Task) -> None:
         """A task that there is from now on.
 
         One that comes too late to begin with another can never begin. It is tied to none: no other waits for it.
         """
-        task = as_it_holds(task, self.ignored)
-        if late := self.too_late_to_begin_with(task.starts_with):
-            self.expired[task.id] = late
-            task = replace(task, starts_with=())
-        self.tasks[task.id] = task
+        self.tasks[task.id] = as_it_holds(task, self.ignored)
         self.touched[task.id] = None
         self._tasks_changed()
+        if _referred_to(task) and (self.starts_s or self.ends_s or self.cancelled):
+            self._expire_if_too_late(task.id)
+
+    def _expire_if_too_late(self, task: str) -> None:
+        others = [name for name in self.unit(task) if name != task]
+        if late := self.too_late_to_begin_with(others):
+            self.expired[task] = late
+            self.tasks[task] = beginning_apart(self.tasks[task], others)
+            self.tasks |= {name: beginning_apart(self.tasks[name], [task]) for name in others}
+            self._model = None
 
     def as_it_holds(self, robot: Robot) -> Robot:
         """A robot without what does not hold."""
@@ -139,46 +153,24 @@ class Ledger:
         for name in tasks:
             over = "is done" if name in self.ends_s else "is cancelled" if name in self.cancelled else ""
             if over or name in self.starts_s:
-                return f"relation: begins with {name}, which {over or 'has begun'}"
+                return f"{begins_with(name)}, which {over or 'has begun'}"
         return ""
 
     def unit(self, task: str) -> tuple[str, ...]:
         """The tasks that begin together with a task, itself included."""
-        if not self._units:
-            self._units = units_of(self.tasks.values())
-        return self._units[task]
+        return self.model.unit(task)
 
     def is_joint(self, task: str) -> bool:
         """Whether several robots begin the task at the same moment: as a team, or with tasks that are tied to it."""
-        return self.tasks[task].is_for_team or len(self.unit(task)) > 1
+        return self.model.is_for_team(task) or len(self.unit(task)) > 1
 
-    def lag_limits(self, task: str) -> dict[str, tuple[float, float]]:
-        """For each prerequisite with a lag that has ended the earliest and latest time at which work may begin."""
-        lags = self.tasks[task].lags
-        ended = [(before, self.ends_s[before], lags[before]) for before in lags if before in self.ends_s]
-        return {
-            before: (end + lag.after_s, math.inf if lag.within_s is None else end + lag.within_s)
-            for before, end, lag in ended
-        }
-
-    def within_dependants(self, unit: Collection[str]) -> list[str]:
+    def dependants_soon_after(self, unit: Collection[str]) -> list[str]:
         """Tasks not done that must begin within some time after one of these."""
-        if self._must_follow is None:
-            self._must_follow = _must_follow(self.tasks.values())
-        after = dict.fromkeys(after for name in unit for after in self._must_follow.get(name, ()))
-        return [name for name in after if self.is_open(name)]
+        return [name for name in self.model.soon_after(unit) if self.is_open(name)]
 
-    def has_within(self, task: str) -> bool:
+    def must_be_followed(self, task: str) -> bool:
         """Whether a task must begin soon after this one."""
-        return bool(self.within_dependants(self.unit(task)))
-
-    @property
-    def is_timed(self) -> bool:
-        """Whether any task has a rule about time or teams."""
-        return any(
-            task.window_s or task.deadline_s is not None or task.lags or task.is_for_team or task.starts_with
-            for task in self.tasks.values()
-        )
+        return bool(self.dependants_soon_after(self.unit(task)))
 
     @property
     def open(self) -> list[Task]:
@@ -220,16 +212,12 @@ class Ledger:
         return self.team_waits_s[task] if task in self.team_waits_s else self.starts_s[task] - self.arrivals_s[task]
 
     def may_begin(self, task: str) -> bool:
-        """Whether all prerequisites have ended."""
+        """Whether all tasks have ended that end before this one."""
         return not self.missing(task)
 
-    def prerequisites(self, task: str) -> tuple[str, ...]:
-        """The prerequisites that hold."""
-        return self.tasks[task].prerequisites if self.needs_order else ()
-
     def missing(self, task: str) -> list[str]:
-        """Prerequisites that have not ended."""
-        return [name for name in self.prerequisites(task) if name not in self.ends_s]
+        """Tasks to end before this one that have not ended."""
+        return [name for name in self.model.before(task) if name not in self.ends_s]
 
     def begin(self, task: str, robots: tuple[str, ...], now: float) -> None:
         """Robots begin a task."""
@@ -267,19 +255,20 @@ class Ledger:
         """Neither a task nor those that begin with it can begin any more."""
         for name in self.unit(task):
             if self.is_open(name):
-                self.expired.setdefault(name, reason if name == task else f"relation: begins with {task}; {reason}")
+                self.expired.setdefault(name, reason if name == task else f"{begins_with(task)}; {reason}")
 
     def late_s(self, task: str) -> float:
         """By how much a task done ended after its due time."""
         return _over(self.ends_s[task], self.tasks[task].due_s)
 
     def overdue_s(self, task: str) -> float:
-        """By how much a task done ended after its deadline."""
-        return _over(self.ends_s[task], self.tasks[task].deadline_s)
+        """By how much a task done ended after the latest time at which it may."""
+        return _over(self.ends_s[task], self.model.ends_by_s(task))
 
     def begun_too_late_s(self, task: str) -> float:
         """By how much a task done began too long after a prerequisite."""
-        return max((_over(self.starts_s[task], latest) for _, latest in self.lag_limits(task).values()), default=0.0)
+        spans = self.model.spans(task, self.ends_s).values()
+        return max((_over(self.starts_s[task], latest_s) for _, latest_s in spans), default=0.0)
 
     def members(self, task: str) -> tuple[str, ...]:
         """The robots that do a task that has begun, or did it."""
@@ -324,6 +313,7 @@ class Ledger:
     def move(self, task: str, to: Point) -> None:
         """A task is elsewhere from now on: robots may try it that could not do it where it was."""
         self.tasks[task] = moved(self.tasks[task], to)
+        self._model = None
         self.give_up(task)
         self.refusals.pop(task, None)
 
@@ -371,8 +361,7 @@ class Ledger:
 
     def _tasks_changed(self) -> None:
         self.revision += 1
-        self._units = {}
-        self._must_follow = None
+        self._model = None
 
     def _sum_up(self, task: str) -> None:
         sums = self.retired
@@ -402,15 +391,6 @@ def _out(task: Task, gone: Mapping[str, str]) -> str:
     return f"; no longer taking part: {some_of(who)}" if who else ""
 
 
-def _must_follow(tasks: Iterable[Task]) -> dict[str, list[str]]:
-    """By task those that must begin within some time after it."""
-    found = defaultdict(list)
-    for task in tasks:
-        for before in (before for before, lag in task.lags.items() if lag.within_s is not None):
-            found[before].append(task.id)
-    return found
-
-
 def _over(time_s: float, limit_s: float | None) -> float:
     """By how much a time is past a limit, more than by rounding."""
     over = 0.0 if limit_s is None else time_s - limit_s
@@ -432,9 +412,9 @@ def lying(task: Task, at: Point, amounts: Mapping[str, float]) -> Task:
     """A task that took goods on board which now lie elsewhere: they are to be taken on there.
 
     What its work had to wait for, by when it was to be done, and who was to do it together with whom, was kept when it
-    was done first. Its time windows hold for the work that is to be done now.
+    was done first. When it may begin holds for the work that is to be done now.
     """
     has_geometry = task.action is not None and task.action.has_geometry
     there = moved(replace(task, entry=None, exit=None, action=None if has_geometry else task.action), at)
-    without: dict[str, Any] = {"prerequisites": (), "lags": {}, "deadline_s": None, "starts_with": ()}
-    return replace(there, load=as_amount(amounts), same_robot_as=(), other_robot_than=(), **without)
+    free = as_it_holds(there, ("prerequisite", "deadline", "relation"))
+    return replace(free, prerequisites=(), load=as_amount(amounts))

@@ -17,6 +17,7 @@ from muster.mission.model import Event, MovedTask, Task
 from muster.mission.plan import Plan
 from muster.mission.value_types import shown
 from muster.model.problem import Problem
+from muster.model.schedule import held_back_for
 from muster.motion.port import RobotPort
 from muster.state import OtherEvent
 from muster.state.task_events import MISSED, Ends, TaskRefused
@@ -191,26 +192,22 @@ class RobotControl:
         ledger, spans = self._executor.ledger, self._negotiator.spans
         until_s = now
         for before in self._unit(task):
-            for name in ledger.within_dependants([before]):
-                lag = ledger.tasks[name].lags[before]
-                if lag.within_s is None or name not in spans or before not in spans:
+            for name in ledger.dependants_soon_after([before]):
+                if name not in spans or before not in spans:
                     continue
+                least_s, most_s = ledger.model.gaps(name)[before]
                 (begin_s, _), (starts_s, ends_s) = spans[name], spans[before]
-                late_s = min(LATENESS * max(0.0, begin_s - now), (lag.within_s - lag.after_s) / 2)
-                until_s = max(until_s, begin_s + late_s - lag.within_s - (ends_s - starts_s))
+                late_s = held_back_for(max(0.0, begin_s - now), LATENESS, least_s, most_s)
+                until_s = max(until_s, begin_s + late_s - most_s - (ends_s - starts_s))
         return min(until_s, max(now, self._latest_s(task)))
 
     def _latest_s(self, task: str) -> float:
         """Until when a task may be held back for others, for its own times; they are kept with time to spare."""
-        ledger = self._executor.ledger
-        latest_s = math.inf
+        ledger, latest_s = self._executor.ledger, math.inf
         for name in self._unit(task):
-            what, (begin_s, ends_s) = ledger.tasks[name], self._negotiator.spans.get(name, (0.0, 0.0))
-            closes_s = [closes for opens, closes in what.window_s if closes is not None and opens <= begin_s <= closes]
-            deadlines_s = [] if what.deadline_s is None else [what.deadline_s - (ends_s - begin_s)]
-            lags_s = [latest for _, latest in ledger.lag_limits(name).values()]
-            latest_s = min([latest_s, *(limit - self._notice_s for limit in (*closes_s, *deadlines_s, *lags_s))])
-        return latest_s
+            begin_s, ends_s = self._negotiator.spans.get(name, (0.0, 0.0))
+            latest_s = min(latest_s, ledger.model.begins_by_s(name, begin_s, ends_s - begin_s, ledger.ends_s))
+        return latest_s - self._notice_s
 
     def begin_together(self, task: str) -> None:
         """As `execution.Peers.begin_together`."""

@@ -18,7 +18,7 @@ from muster.motion.port import Place
 from muster.state.robot_events import GoesOn, WaitsInTraffic
 from muster.state.traffic_account import TrafficAccount
 
-WAITS_AFTER_S = 1.0
+LEAST_WAIT_S = 1.0
 """Seconds for which a robot is held up before that counts as waiting, and gets on before that is over."""
 _HARDLY = 0.1
 """Share of its speed below which a robot hardly gets on."""
@@ -125,11 +125,11 @@ class TrafficWaits:
                 self.waits[robot] = TrafficWait(other, state.position, now, now)
             elif other and wait is not None:
                 wait.note(other, now)
-                if not wait.told and now - wait.since_s >= WAITS_AFTER_S:
+                if not wait.told and now - wait.since_s >= LEAST_WAIT_S:
                     wait.told = True
                     place = plain_place(wait.place)
                     yield WaitsInTraffic(robot=robot, waits_for=wait.waits_for, position=place, since_s=wait.since_s)
-            elif wait is not None and (now - wait.until_s >= WAITS_AFTER_S or not _under_way(state)):
+            elif wait is not None and (now - wait.until_s >= LEAST_WAIT_S or not _under_way(state)):
                 yield from self._over(robot, wait)
         since_s, self._looked_s = self._looked_s, now
         for robot, wait in self.waits.items():

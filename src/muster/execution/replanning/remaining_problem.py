@@ -15,17 +15,19 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from muster.allocation.fixed import admissible_alone, with_fixed_routes
-from muster.execution.replanning.relations import Binding
+from muster.execution.replanning.relations import BY_WHICH_TASKS_ARE_BOUND, Binding
 from muster.execution.replanning.travel import Spot, Travel
 from muster.mission.goods import Amount, as_amount, by_commodity
 from muster.mission.model import Mission, Robot, Station, Task
 from muster.mission.plan import Plan, Route
-from muster.mission.task_relations import units_of
 from muster.model.energy_under_way import Held, with_held
 from muster.model.measured_energy import EnergyLeft
 from muster.model.problem import Problem
+from muster.model.rules.relation import tied_among
+from muster.model.rules.shift import extended, is_back_late
+from muster.model.under_way import UnderWay
 from muster.motion.port import Place
-from muster.state.reasons import in_one_line
+from muster.state.reasons import begins_with, in_one_line
 
 SO_FAR = "so far"
 _ROUNDING = 1e-9  # relative; by how much a capacity is above what cannot be helped
@@ -162,8 +164,8 @@ def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     tasks, hopeless = _tasks_with_hope(rest, travel)
     past = _past(rest)
     mission = _mission(rest, [*past.values(), *tasks])
-    others = tuple(rule for rule in rest.ignored if rule != "lock")  # the tasks are without it already
-    problem = Problem.compile(mission, rest.objective, ignored=others)
+    ignored = tuple(rule for rule in rest.ignored if rule not in BY_WHICH_TASKS_ARE_BOUND)
+    problem = Problem.compile(mission, rest.objective, ignored=ignored)
     spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
     known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
     problem = _delayed(rest, replace(problem, known=known))
@@ -218,14 +220,11 @@ def _with_energy_to_end(problem: Problem, past: Sequence[Route]) -> Problem:
 
 
 def _late(rest: RemainingMission, problem: Problem) -> dict[str, str]:
-    """Robots whose shift is over before they can be back, and why they can do no task more."""
-    until = {one.id: one.available_until_s for one in problem.robots if "shift" not in rest.ignored}
-    shifts = {s.robot.id: s.robot.available_until_s for s in rest.crew if s.robot.available_until_s is not None}
-    return {
-        robot: f"shift: is done at {back_s:,.2f} s without it, its shift ends at {shift:,.2f} s"
-        for robot, shift in shifts.items()
-        if (back_s := until.get(robot)) is not None and back_s > shift
-    }
+    """Robots whose routes would have to be over before they can be back, and why they can do no task more."""
+    model = UnderWay(rest.mission, (), rest.ignored)
+    over_by_s = {one.robot.id: model.over_by_s(one.robot) for one in rest.crew}
+    back_s = zip((robot.id for robot in problem.robots), problem.model.over_by, strict=True)
+    return {robot: is_back_late(back, over_by_s[robot]) for robot, back in back_s if back > over_by_s[robot]}
 
 
 def _past(rest: RemainingMission) -> dict[str, Task]:
@@ -244,12 +243,13 @@ def _past(rest: RemainingMission) -> dict[str, Task]:
 
 def _past_task(rest: RemainingMission, snapshot: RobotSnapshot, name: str) -> Task:
     in_time = rest.mission.rules.usage == "time"
-    lasts = snapshot.used if in_time else max(0.0, snapshot.free_s - rest.now_s)
+    used = max(0.0, snapshot.used)  # a count that is resumed may begin below 0
+    lasts = used if in_time else max(0.0, snapshot.free_s - rest.now_s)
     return Task(
         id=name,
         type=None if rest.mission.suitability is None else SO_FAR,
         position=snapshot.spot.point[: rest.mission.dimensions],
-        actuation_cost=0.0 if in_time else snapshot.used,
+        actuation_cost=0.0 if in_time else used,
         duration_s=lasts * snapshot.robot.efficiency,
     )
 
@@ -282,7 +282,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
     hopeful = {name: task for name, task in hopeful.items() if name in sure}
     _drop_units_without_hope(rest, hopeful, hopeless)
     _drop_transports_without_hope(rest, hopeful, hopeless)
-    return [_related_to(task, hopeful) for task in hopeful.values()], hopeless
+    return [tied_among(task, hopeful) for task in hopeful.values()], hopeless
 
 
 def _for_robots(task: Task, robots: tuple[str, ...] | None) -> Task:
@@ -297,11 +297,12 @@ def _open_prerequisites(rest: RemainingMission, task: Task) -> tuple[str, ...]:
 
 def _drop_units_without_hope(rest: RemainingMission, hopeful: dict[str, Task], hopeless: dict[str, str]) -> None:
     """Of tasks that begin together none is planned if one cannot be."""
-    for unit in set(units_of(rest.tasks).values()):
+    model = UnderWay(rest.mission, rest.tasks, rest.ignored)
+    for unit in {model.unit(task.id) for task in rest.tasks}:
         lost = [name for name in unit if name not in hopeful]
         for name in unit if lost else ():
             if hopeful.pop(name, None) is not None:
-                hopeless[name] = f"relation: begins with {lost[0]}, which is not going to be done"
+                hopeless[name] = f"{begins_with(lost[0])}, which is not going to be done"
 
 
 def _drop_transports_without_hope(rest: RemainingMission, hopeful: dict[str, Task], hopeless: dict[str, str]) -> None:
@@ -312,18 +313,6 @@ def _drop_transports_without_hope(rest: RemainingMission, hopeful: dict[str, Tas
                 del hopeful[name]
                 does = "takes on what it delivers" if name == task.id else "delivers what it takes on"
                 hopeless[name] = f"load: {other}, which {does}, is not going to be done"
-
-
-def _related_to(task: Task, there: Collection[str]) -> Task:
-    """A task with those relations that concern tasks of the problem."""
-    if not (task.same_robot_as or task.other_robot_than or task.starts_with):
-        return task
-    return replace(
-        task,
-        same_robot_as=tuple(name for name in task.same_robot_as if name in there),
-        other_robot_than=tuple(name for name in task.other_robot_than if name in there),
-        starts_with=tuple(name for name in task.starts_with if name in there),
-    )
 
 
 def _robots_for(rest: RemainingMission, task: Task) -> tuple[tuple[str, ...] | None, str]:
@@ -396,7 +385,7 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
     available_from_s = max(0.0, leaves if snapshot.has_past else max(leaves, robot.available_from_s))
     robot = _over_in_time(robot, snapshot, available_from_s)
     return replace(
-        robot,
+        extended(robot, available_from_s),
         position=snapshot.spot.point[: mission.dimensions],
         end_position=None if snapshot.home is None else snapshot.home[: mission.dimensions],
         return_to_start=False,
@@ -430,7 +419,7 @@ def _load_of(snapshot: RobotSnapshot, rest: RemainingMission) -> Amount | None:
 
 
 def _bearable(problem: Problem, past: Mapping[str, Task]) -> Problem:
-    """With capacities and shifts raised to what robots have used and need to go home: that is so, and no more.
+    """With capacities, and times to be over by, raised to what robots have used and need to go home, and no more.
 
     A robot that has no way home need not go there.
     """
@@ -444,7 +433,7 @@ def _bearable(problem: Problem, past: Mapping[str, Task]) -> Problem:
             if math.isinf(home):
                 robot, home = replace(robot, end_position=None), 0.0
             least = (float(problem.work_usage(i)[j]) + home) * (1 + _ROUNDING) + _ROUNDING
-            robot = _with_shift_until(robot, _back_s(problem, i, j))
+            robot = extended(robot, _back_s(problem, i, j) * (1 + _ROUNDING))
             if robot.work_capacity is not None and robot.work_capacity < least:
                 robot = replace(robot, work_capacity=least)
         robots.append(robot)
@@ -456,9 +445,4 @@ def _back_s(problem: Problem, i: int, j: int) -> float:
     robot = problem.robots[i]
     ends_s = robot.available_from_s + float(problem.work_seconds(i)[j])
     home_s = 0.0 if robot.end_position is None else float(problem.travel_seconds(i, [j], [problem.end(i)])[0, 0])
-    return ends_s if math.isinf(home_s) else ends_s + home_s
-
-
-def _with_shift_until(robot: Robot, back_s: float) -> Robot:
-    until = robot.available_until_s
-    return robot if until is None or until >= back_s else replace(robot, available_until_s=back_s * (1 + _ROUNDING))
+    return ends_s if math.isinf(home_s) else problem.back(i, ends_s, j)

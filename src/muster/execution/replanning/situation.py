@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-from muster.execution.replanning.relations import binding_of, narrowed, with_whole_team
+from muster.execution.replanning.relations import as_bound, binding_of
 from muster.execution.replanning.remaining_problem import RemainingMission, RobotSnapshot
 from muster.execution.replanning.transports import deliveries_aboard, load_after_work, on_board, transports
 from muster.execution.replanning.travel import Spot
@@ -16,12 +16,12 @@ from muster.execution.stations.slots import AT_STATION, Stations
 from muster.execution.stations.station_service import to_add
 from muster.execution.timing.duty import over_by_s
 from muster.mission.errors import ParameterError
-from muster.mission.ignorable_rules import as_it_holds
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Reason, Route, RouteStop, Unassigned
 from muster.mission.value_types import shown
 from muster.model.energy_under_way import Held
 from muster.model.measured_energy import EnergyLeft
+from muster.model.under_way import UnderWay
 from muster.state.goods_ledger import GoodsLedger
 from muster.state.task_ledger import Ledger
 
@@ -35,7 +35,8 @@ def required_routes(mission: Mission, plan: Plan) -> dict[str, tuple[RouteStop, 
         for robots and tasks that there are not, or that stand twice.
     """
     robots = {robot.id for robot in mission.robots}
-    tasks = {task.id: as_it_holds(task, plan.ignored).is_for_team for task in mission.tasks}
+    model = UnderWay(mission, mission.tasks, plan.ignored)
+    tasks = {task.id: model.is_for_team(task.id) for task in mission.tasks}
     seen: set[str] = set()
     stations = {station.id for station in mission.stations}
     routes: dict[str, tuple[RouteStop, ...]] = {}
@@ -81,7 +82,7 @@ def remaining_mission_of(
             _snapshot(state, now, stations, load_after_work(state, ledger, goods), _done(state, ledger))
             for state in present
         ],
-        tasks=[with_whole_team(narrowed(task, ledger), bindings[task.id]) for task in transported],
+        tasks=[as_bound(task, bindings[task.id], ledger) for task in transported],
         ended=ledger.ends_s.keys(),
         delays_s=ledger.delays_s,
         refusals=ledger.refusals,

@@ -33,7 +33,7 @@ class Account:
         by robot the usage, in the mission's unit, of the part of the plan that was carried out.
     mission_time_s, reallocations, done_twice
         as in `Report`.
-    shifts_exceeded_s
+    overtime_s
         by robot how long it was under way after its shift, of those that were.
     back_s
         when robots were back, where that counts for the makespan.
@@ -54,7 +54,7 @@ class Account:
     reallocations: int
     planned_so_far: Mapping[str, float] = field(default_factory=dict)
     done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    shifts_exceeded_s: Mapping[str, float] = field(default_factory=dict)
+    overtime_s: Mapping[str, float] = field(default_factory=dict)
     back_s: tuple[float, ...] = ()
     traffic: TrafficAccount = field(default_factory=TrafficAccount)
     waits_s: Mapping[str, float] = field(default_factory=dict)
@@ -284,7 +284,7 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         missed=tuple(MissedReport(one.task, one.at_s, one.reason, one.next_s) for one in ledger.missed),
         deadlines_missed_s={task: ledger.overdue_s(task) for task in done if ledger.overdue_s(task) > 0},
         within_exceeded_s={task: ledger.begun_too_late_s(task) for task in done if ledger.begun_too_late_s(task) > 0},
-        shifts_exceeded_s=dict(account.shifts_exceeded_s),
+        shifts_exceeded_s=dict(account.overtime_s),
         done_twice=dict(account.done_twice),
         orders=account.orders,
         tasks_forgotten=_forgotten(ledger),

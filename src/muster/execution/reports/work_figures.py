@@ -1,4 +1,4 @@
-"""Figures of what robots did: their rows of reports, work after their shifts, and when they were back."""
+"""Figures of what robots did: their rows of reports, work after they had to be back, and when they were."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from collections.abc import Iterable
 
 from muster.execution.reports.robot_report import RobotReport
 from muster.execution.robots.robot_state import Activity, RobotState
-from muster.state.task_ledger import TIME_ROUNDING_S
+from muster.mission.system.clock import TIME_ROUNDING_S
+from muster.model.under_way import UnderWay
 
 
 def robot_row(state: RobotState, planned: float) -> RobotReport:
@@ -16,14 +17,14 @@ def robot_row(state: RobotState, planned: float) -> RobotReport:
     return RobotReport(state.robot.id, planned, state.used, left, least, added, state.visits, state.slot_wait_s)
 
 
-def shifts_exceeded_s(worked: Iterable[RobotState], now: float) -> dict[str, float]:
-    """By how many seconds robots that worked were under way after their shifts; those alone that were."""
+def overtime_s(worked: Iterable[RobotState], model: UnderWay, now: float) -> dict[str, float]:
+    """By how many seconds robots that worked were under way after they had to be back; those alone that were."""
     found = {}
     for state in worked:
-        until_s = state.robot.available_until_s
-        back = state.begun_s if state.activity is Activity.IDLE else now
-        if until_s is not None and back - until_s > TIME_ROUNDING_S:
-            found[state.robot.id] = back - until_s
+        over_by_s = model.over_by_s(state.robot)
+        back_s = state.begun_s if state.activity is Activity.IDLE else now
+        if back_s - over_by_s > TIME_ROUNDING_S:
+            found[state.robot.id] = back_s - over_by_s
     return found
 
 

@@ -28,7 +28,7 @@ class Activity(Enum):
 
     IDLE = "idle"  # available
     DRIVING = "driving"  # to the first task of its route; an order may hold the work too
-    WAITING = "waiting"  # at the task, for prerequisites, its time window, its team ...
+    WAITING = "waiting"  # at the task: for other tasks, for the clock, for its team ...
     WORKING = "working"
     RETURNING = "returning"  # to where its route ends
     TO_STATION = "driving to station"

@@ -1,1 +1,1 @@
-"""When tasks begin: prerequisites, time windows, teams that must meet, the forecast of all this, and lateness."""
+"""When tasks begin: what they wait for, the robots that must be there, the forecast of all this, and lateness."""

@@ -8,15 +8,16 @@ from dataclasses import dataclass, field
 
 from muster.execution.record import Tell
 from muster.execution.robots.robot_state import Activity, RobotState
-from muster.execution.timing.beginning import Beginning, Missed, next_begin
+from muster.execution.timing.beginning import Beginning
 from muster.execution.timing.forecast import Forecast
+from muster.model.under_way import Missed
 from muster.state.task_events import MISSED
-from muster.state.task_ledger import TIME_ROUNDING_S, Ledger
+from muster.state.task_ledger import Ledger
 
 
 @dataclass
 class Punctuality:
-    """Compares the clock with windows, deadlines and lags.
+    """Compares the clock with the times by which tasks must begin and end.
 
     Parameters
     ----------
@@ -41,7 +42,7 @@ class Punctuality:
 
     def expect(self, forecast: Forecast, now: float) -> None:
         """Note when tasks are going to begin by the routes as they are now."""
-        self._timed = self.ledger.is_timed or any(state.robot.shifts_s for state in self.crew.values())
+        self._timed = self.ledger.model.is_timed or any(state.robot.shifts_s for state in self.crew.values())
         self._planned_s = (forecast.begins(now) or {}) if self._timed else {}
         self._in_time_until_s = {}
 
@@ -59,7 +60,7 @@ class Punctuality:
             missed = self.beginning.missed(task.id, now)
             if missed is None:
                 self._in_time_until_s[task.id] = self.beginning.in_time_until_s(task.id, now)
-                missed = self._missed_window(task.id, now)
+                missed = self._missed_opening(task.id, now)
             if missed is not None:
                 tell = self.ask if self._is_routed(task.id) else self.emit
                 tell(MISSED[missed.rule](task=task.id, reason=missed.reason, next_s=missed.next_s))
@@ -101,14 +102,10 @@ class Punctuality:
     def _is_routed(self, task: str) -> bool:
         return any(task in state.route for state in self.crew.values() if not state.out)
 
-    def _missed_window(self, name: str, now: float) -> Missed | None:
-        """A window that was meant has closed, and another one opens later."""
-        task, planned = self.ledger.tasks[name], self._planned_s.get(name)
-        if planned is None or len(task.window_s) < 2:
-            return None
-        for first, last in task.window_s:
-            if last is not None and first - TIME_ROUNDING_S <= planned <= last and now > last + TIME_ROUNDING_S:
-                del self._planned_s[name]
-                opens = next_begin([task], now)
-                return Missed("window", f"window: closed at {last:,g} s; the next is open from {opens:,g} s on", opens)
-        return None
+    def _missed_opening(self, task: str, now: float) -> Missed | None:
+        """That a task was not begun when it was meant to, and may begin later."""
+        planned_s = self._planned_s.get(task)
+        missed = None if planned_s is None else self.ledger.model.missed_opening(task, planned_s, now)
+        if missed is not None:
+            del self._planned_s[task]
+        return missed

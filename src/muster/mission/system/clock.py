@@ -5,6 +5,9 @@ from __future__ import annotations
 import time
 from typing import Protocol
 
+TIME_ROUNDING_S = 1e-6
+"""By which a time may be past a limit: clocks add up steps."""
+
 
 class Clock(Protocol):
     """Seconds from some fixed moment, never going back."""

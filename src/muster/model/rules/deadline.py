@@ -21,7 +21,7 @@ from muster.model.rules.rule import (
     Rule,
     first_task,
 )
-from muster.model.rules.times import known_least, longer, moments, span
+from muster.model.rules.times import known_least, longer, moments, rounded, span
 
 
 @dataclass(frozen=True)
@@ -91,3 +91,13 @@ def too_late(problem: Question, j: int, end: float) -> str | None:
         return None
     ends, until = moments(problem, end, deadline)
     return f"ends at {ends} at the earliest, its deadline is {until}"
+
+
+def is_over(by_s: float) -> str:
+    """Why a task can never end in time any more."""
+    return f"deadline: {rounded(by_s)} is over"
+
+
+def would_end_late(ends_s: float, by_s: float) -> str:
+    """Why a robot cannot do a task that would end at a time."""
+    return f"deadline: would end at {ends_s:,.1f} s, after {by_s:,g} s"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import ClassVar
 
 import numpy as np
@@ -18,6 +18,7 @@ from muster.model.rules.rule import (
     first_task,
     listed,
 )
+from muster.model.rules.times import rounded
 
 
 def _awaited_lags(problem: Question, j: int) -> list[tuple[float, float]]:
@@ -65,3 +66,23 @@ class Prerequisite(Rule):
         if plan.insertion(i, j) is None:
             return "at every place in its route the prerequisites would wait in a circle"
         return None
+
+
+def waits_for(names: Collection[str]) -> str:
+    """What a robot waits for at a task before which others must end."""
+    return f"waits for {listed(names)}"
+
+
+def waits_after(before: str, until_s: float) -> str:
+    """What a robot waits for at a task that may not begin so soon after another."""
+    return f"waits for lag: {rounded(until_s)}, after {before}"
+
+
+def not_begun_within(before: str, most_s: float, ended_s: float) -> str:
+    """Why a task can never begin any more, so long after another has ended."""
+    return f"prerequisite: not begun within {rounded(most_s)} after {before}, ended at {rounded(ended_s)}"
+
+
+def waits_for_dependants(names: Collection[str]) -> str:
+    """What a robot waits for at a task after which others must begin soon."""
+    return f"waits so that {listed(names)} can begin in time after it"

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from muster.mission.model import Robot, Task
+from muster.mission.task_relations import RELATIONS
 from muster.model.bottleneck import on_some_matching
 from muster.model.parts import Parts
 from muster.model.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_task, listed
@@ -136,3 +137,16 @@ def _different(limits: Limits, unit: list[int]) -> dict[int, Bools]:
     tasks, fits = rules.places(rules.unit[unit[0]])
     able = on_some_matching(fits & limits.alone.T[tasks])
     return {j: np.asarray(able[[k for k, task in enumerate(tasks) if task == j]].any(axis=0)) for j in unit}
+
+
+def tied_among(task: Task, there: Collection[str]) -> Task:
+    """The task, with only those ties that are to tasks that are there."""
+    left: dict[str, Any] = {key: tuple(name for name in getattr(task, key) if name in there) for key in RELATIONS}
+    return task if all(left[key] == getattr(task, key) for key in RELATIONS) else replace(task, **left)
+
+
+def tied_to(same: Mapping[str, Collection[str]], others: Mapping[str, Collection[str]]) -> str:
+    """Whom robots leave to a task that have done tasks which the same robots do, or others; empty: all."""
+    said = [f"same robot as {name} ({listed(crew)})" for name, crew in same.items()]
+    said += [f"other robot than {name} ({listed(crew)})" for name, crew in others.items()]
+    return f"relation: {listed(said)}" if said else ""

@@ -224,3 +224,27 @@ def _new_name(names: set[str], k: int) -> str:
 def _ability(robot: Robot, name: str) -> float:
     """How much of an ability a robot has."""
     return float((robot.abilities or {}).get(name, 0.0))
+
+
+def waits_for_team(who: str) -> str:
+    """What the robots wait for that are at a task already."""
+    return f"waits for team: {who}"
+
+
+def waits_to_start_with(other: str, who: str) -> str:
+    """What robots wait for at a task that begins together with another."""
+    return f"waits for start with {other}: {who}"
+
+
+def missing_of_seat(task: Task, seat: int, missing: int) -> str:
+    """What so many robots lack that sit in none of the places of a sort."""
+    if not task.team:
+        return f"{missing} more robot{'s' if missing > 1 else ''}"
+    part = task.team[seat]
+    sort = " ".join(word for word in (part.kind, part.type) if word) or "robot"
+    return f"one more {sort}{f' with {listed(part.requires)}' if part.requires else ''}"
+
+
+def by_so_many(task: Task, count: int) -> Task:
+    """The task, done by so many robots instead of by any that are able enough."""
+    return task if task.needs is None else replace(task, needs=None, robots_needed=count)

@@ -62,3 +62,8 @@ def _seconds(time: float, digits: int) -> str:
 def _of_day(problem: Question, time: float) -> str:
     start = problem.mission.starts_at
     return "" if start is None or time > _LONGEST else f" ({clock_text(time, start)})"
+
+
+def rounded(seconds: float) -> str:
+    """A time in words that are said under way."""
+    return f"{round(seconds, 1):,g} s"

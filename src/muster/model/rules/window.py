@@ -12,7 +12,7 @@ import numpy as np
 from muster.mission.model import Robot, Task
 from muster.model.parts import Parts
 from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Rule, first_task, listed
-from muster.model.rules.times import known_least, longer, moments, reaches, span
+from muster.model.rules.times import known_least, longer, moments, reaches, rounded, span
 
 
 @dataclass(frozen=True)
@@ -115,3 +115,34 @@ def _windows(problem: Question, j: int) -> str:
         for opens, closes in problem.model.openings[j]
     )
     return f"{problem.tasks[j].id} {' or '.join(said)}"
+
+
+def waits_until(opens_s: float) -> str:
+    """What a robot waits for at a task that may not begin yet."""
+    return f"waits for window: opens at {rounded(opens_s)}"
+
+
+def is_closed(closed_s: float) -> str:
+    """Why a task can never begin any more."""
+    return f"window: closed at {rounded(closed_s)}"
+
+
+def next_opens(closed_s: float, opens_s: float) -> str:
+    """Why a task does not begin when it was meant to, and when it may instead."""
+    return f"window: closed at {closed_s:,g} s; the next is open from {opens_s:,g} s on"
+
+
+def would_be_closed(arrive_s: float) -> str:
+    """Why a robot cannot do a task at which it would arrive at a time."""
+    return f"window: would arrive at {arrive_s:,.1f} s, after it has closed"
+
+
+def begun_between(task: Task, from_s: float, until_s: float) -> Task:
+    """The task, to be begun in those of its windows, and the parts of them, that are between two times.
+
+    It is the same task if none is.
+    """
+    spans = [(max(opens, from_s), closes) for opens, closes in task.window_s or ((0.0, None),)]
+    ends = [(opens, min(math.inf if closes is None else closes, until_s)) for opens, closes in spans]
+    left = tuple((opens, None if closes == math.inf else closes) for opens, closes in ends if opens <= closes)
+    return replace(task, window_s=left) if left else task

@@ -83,14 +83,14 @@ class Region:
         return np.array([(west + east) / 2, (south + north) / 2])
 
     def moved(self, by: Floats) -> Region:
-        """The same region, shifted by (2) metres; near the origin rounding is least."""
+        """The same region, translated by (2) metres; near the origin rounding is least."""
         import shapely
 
-        def shifted(surface: Surface) -> Surface:
+        def translated(surface: Surface) -> Surface:
             found: Surface = shapely.transform(surface, lambda points: points + by)
             return found
 
-        return replace(self, seen=shifted(self.seen), free=shifted(self.free))
+        return replace(self, seen=translated(self.seen), free=translated(self.free))
 
     @property
     def edges(self) -> Floats:

@@ -125,17 +125,17 @@ def towards(goals: Floats, max_speeds: Floats, dt: float) -> Preference:
 
 
 def perturbed(preference: Preference, share: float, seed: int, hold: int = 1) -> Preference:
-    """The same velocities, each shifted at random by this share of its length, which breaks symmetries.
+    """The same velocities, each perturbed at random by this share of its length, which breaks symmetries.
 
-    A shift lasts for `hold` steps: one that changes at every step averages out where robots block each other.
+    A perturbation lasts for `hold` steps: one that changes at every step averages out where robots block each other.
     """
 
     def preferred(positions: Floats, step: int) -> Floats:
         velocities = preference(positions, step)
-        shift = np.random.default_rng((seed, step // hold)).normal(size=velocities.shape)
-        shift /= np.linalg.norm(shift, axis=1, keepdims=True)
-        shifted: Floats = velocities + share * np.linalg.norm(velocities, axis=1, keepdims=True) * shift
-        return shifted
+        noise = np.random.default_rng((seed, step // hold)).normal(size=velocities.shape)
+        noise /= np.linalg.norm(noise, axis=1, keepdims=True)
+        found: Floats = velocities + share * np.linalg.norm(velocities, axis=1, keepdims=True) * noise
+        return found
 
     return preferred
 

@@ -76,7 +76,7 @@ class Forecast:
 class Forecaster:
     """Forecasts of the traffic of one mission.
 
-    A robot stays at each task as long as its route says, waiting for prerequisites, windows and teams included.
+    A robot stays at each task as long as its route says, waits for other tasks, the clock and other robots included.
 
     Parameters
     ----------

@@ -35,17 +35,17 @@ STOPS_PLANNED = 120
 """Stops of all robots to which moves are planned, but `LEAST_STOPS` of each; anew where one has fewer than half of
 these left."""
 LEAST_STOPS = 4
-TOLD_WITHIN_S = 0.5
+NOTICE_S = 0.5
 """A robot that has done what it was to do is told within this time where to go next."""
-BROKEN_AFTER_S = 5.0
+NO_PROGRESS_S = 5.0
 """A robot that does not move for so long though its way is free counts as an obstacle until it moves."""
-TRIED_AFTER_S = 6.0
+RETRY_S = 6.0
 """So long after that it is told anew where to go: it may have dropped its order."""
 MOST_TRIES = 4
 """So often that time is doubled for one that has no goal."""
 NO_ROOM_AFTER = 2
 """One that has nothing to do, and was told anew so often, does not move at all."""
-NO_WAY_AFTER_S = 10.0
+NO_WAY_S = 10.0
 """After so long without a way a robot is told where no way leads at all, whoever stands in it."""
 _MOVED_M = 0.05
 _NEVER_S = -math.inf
@@ -156,12 +156,12 @@ class ReservedTraffic:
                 if part.broken:
                     self._mend(part, now)
             if part.broken:
-                if now - part.broken_s >= TRIED_AFTER_S * 2**part.tried:
+                if now - part.broken_s >= RETRY_S * 2**part.tried:
                     part.tried = min(part.tried + 1, MOST_TRIES) if part.port.goal is None else 0
                     self._mend(part, now)
             elif moved or not part.to_go or part.port.at_work:
                 part.stood, part.moved_s = part.near, now
-            elif now - part.moved_s > BROKEN_AFTER_S:
+            elif now - part.moved_s > NO_PROGRESS_S:
                 self._break(part, now)
 
     def _break(self, part: Part, now: float) -> None:
@@ -223,7 +223,7 @@ class ReservedTraffic:
         if goal != part.goal or arrives:
             return True
         last = part.stays and not part.ahead
-        return not last and now - part.done_s >= TOLD_WITHIN_S
+        return not last and now - part.done_s >= NOTICE_S
 
     def _falls_short(self, part: Part) -> bool:
         """Whether the moves of a robot end before its goal, and it is coming near to where they end."""
@@ -326,7 +326,7 @@ class ReservedTraffic:
             part.no_way_s = math.inf
             return
         part.no_way_s = min(part.no_way_s, now)
-        if now - part.no_way_s >= NO_WAY_AFTER_S:
+        if now - part.no_way_s >= NO_WAY_S:
             part.no_way_s = math.inf
             alone = Traveller(part.robot, self._order.end(part.number), (Stop(goal),))
             if not self.plan.reaches([alone], 0, [goal])[0]:

@@ -6,7 +6,7 @@ distance at which two such robots do not touch:
 - narrower than `apart` (a passage for one): points along the middle, the innermost first: the sill of a door, the end
   of a dead end;
 - between `apart` and twice that: two lanes, as far from the walls as they can be;
-- wider: a square lattice, shifted to where the most of its points are free.
+- wider: a square lattice, offset to where the most of its points are free.
 
 What is left and at least `apart` from all of them, and as far from the lattice as its own points are from each other,
 as corners of rooms, is filled with further points.
@@ -22,8 +22,8 @@ import numpy as np
 
 from muster.mission.values.arrays import Bools, Floats
 
-_SHIFTS = 8
-"""Shifts of the lattice that are tried, along each axis."""
+_OFFSETS = 8
+"""Offsets of the lattice that are tried, along each axis."""
 _ON_LANE = 0.75
 """Cells by which a point may be off the middle of a passage."""
 _SLACK = 1e-6
@@ -126,7 +126,7 @@ class Taken:
 
 
 def _spread(cells: Bools, reach: float) -> Bools:
-    """The cells in a square window of these, `reach` cells to each side."""
+    """The cells in a square about these, `reach` cells to each side."""
     from scipy.ndimage import maximum_filter
 
     return np.asarray(maximum_filter(cells, size=2 * int(np.ceil(reach)) + 1))
@@ -171,16 +171,16 @@ def _away_from(cells: Bools) -> Floats:
 
 
 def _lattice(room: Room, taken: Taken, pitch: float, places: Floats) -> Floats:
-    """The free points (n, 2) of the lattice whose shift gives the most, a place on it counting as much as three."""
+    """The free points (n, 2) of the lattice whose offset gives the most, a place on it counting as much as three."""
     allowed = room.free & ~room.narrow & ~room.double & ~taken.cells
     rows, columns = room.free.shape
     best, most = np.zeros((0, 2)), -1.0
-    for k in range(_SHIFTS**2):
-        shift = pitch * (np.array(divmod(k, _SHIFTS)) + 0.5) / _SHIFTS
-        x, y = np.arange(shift[0], columns, pitch), np.arange(shift[1], rows, pitch)
+    for k in range(_OFFSETS**2):
+        offset = pitch * (np.array(divmod(k, _OFFSETS)) + 0.5) / _OFFSETS
+        x, y = np.arange(offset[0], columns, pitch), np.arange(offset[1], rows, pitch)
         found = allowed[np.ix_(y.astype(np.int64), x.astype(np.int64))]
-        off = np.abs((places - shift + pitch / 2) % pitch - pitch / 2).max(axis=1) if len(places) else np.zeros(0)
-        value = float(found.sum()) + 3.0 * float((off < pitch / _SHIFTS).sum())
+        off = np.abs((places - offset + pitch / 2) % pitch - pitch / 2).max(axis=1) if len(places) else np.zeros(0)
+        value = float(found.sum()) + 3.0 * float((off < pitch / _OFFSETS).sum())
         if value > most:
             row, column = np.nonzero(found)
             best, most = np.stack([x[column], y[row]], axis=1), value

@@ -1,0 +1,278 @@
+"""The plan model of a mission under way, by ids: what the rules in force ask of tasks, given when others ended.
+
+No travel is looked up, so that it is cheap to compile the rules again whenever tasks come, go or change.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from operator import is_not
+
+import numpy as np
+
+from muster.mission.model import Mission, Robot, Task
+from muster.mission.system.clock import TIME_ROUNDING_S
+from muster.model.bottleneck import matched
+from muster.model.parts import Openings
+from muster.model.plan_model import PlanModel
+from muster.model.problem import Problem
+from muster.model.rules import deadline, prerequisite, shift, window
+from muster.model.rules.team import missing_of_seat
+
+_ROUNDING = 1e-9  # relative; by which sums may be below what is needed
+
+
+@dataclass(frozen=True)
+class Wait:
+    """Why robots wait at a task.
+
+    Parameters
+    ----------
+    cause
+        `prerequisite`, `window`, `lag`, `team`, `start` (tasks that begin with it) or `dependant` (one that must begin
+        soon after it).
+    words
+        the same for a person: `waits for team: r_2`.
+    until_s
+        when it is over, if the clock alone ends it; else inf.
+    """
+
+    cause: str
+    words: str
+    until_s: float = math.inf
+
+
+@dataclass(frozen=True)
+class Missed:
+    """Why a task cannot begin any more, or not in the opening that was meant.
+
+    Parameters
+    ----------
+    rule
+        the word of the rule: `window`, `deadline` or `prerequisite`.
+    reason
+        in words, which begin with the rule's.
+    next_s
+        when it may begin all the same, in the next opening; None: never.
+    """
+
+    rule: str
+    reason: str
+    next_s: float | None = None
+
+
+@dataclass(eq=False)
+class UnderWay:
+    """What rules ask of the tasks of a mission under way.
+
+    Parameters
+    ----------
+    mission
+        whose rules hold; robots and tasks may have come to it, or gone, since.
+    tasks
+        those that there are; a task that one waits for and that is none of them has ended.
+    ignored
+        rules that do not hold.
+    """
+
+    mission: Mission
+    tasks: Collection[Task]
+    ignored: Collection[str] = ()
+    _over_by: dict[str, tuple[Robot, float]] = field(default_factory=dict)
+    _lacking: dict[str, tuple[Sequence[object], str]] = field(default_factory=dict)  # as last asked about each task
+
+    def __post_init__(self) -> None:
+        self._names = [task.id for task in self.tasks]
+        self._index = {name: j for j, name in enumerate(self._names)}
+        self._model = self._compiled(
+            tuple(task.waiting_for(filter(self._index.__contains__, task.prerequisites)) for task in self.tasks)
+        )
+        self._soon_after: dict[int, list[int]] = {}
+        for j, gaps in self._model.parts.gaps.items():
+            for k in (k for k, (_, most_s) in gaps.items() if most_s < math.inf):
+                self._soon_after.setdefault(k, []).append(j)
+
+    def _compiled(self, tasks: tuple[Task, ...], robots: Sequence[Robot] = ()) -> PlanModel:
+        rules = self.mission.rules
+        return Problem(self.mission, rules.objective, tuple(self.ignored), tuple(robots), tasks).model
+
+    # What is asked of a task, whatever has happened.
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether more than the order of tasks says when any of them may begin, or several robots do one."""
+        parts = self._model.parts
+        bound = parts.openings or parts.ends_by or parts.together or self._model.with_teams
+        return bool(bound) or any(map(self.gaps, self._names))
+
+    def is_bound(self, task: str) -> bool:
+        """Whether more than the order of tasks says when a task, or one that begins with it, may begin."""
+        members = self.unit(task)
+        return len(members) > 1 or any(map(self._is_bound, members))
+
+    def _is_bound(self, task: str) -> bool:
+        timed = self.openings(task) or self.ends_by_s(task) < math.inf
+        return bool(timed or self.is_for_team(task) or self.gaps(task))
+
+    def is_for_team(self, task: str) -> bool:
+        """Whether several robots may have to do a task."""
+        return self._model.is_for_team(self._index[task])
+
+    def unit(self, task: str) -> tuple[str, ...]:
+        """The tasks that begin together with a task, itself included."""
+        model = self._model
+        return tuple(self._names[j] for j in model.units[model.unit[self._index[task]]])
+
+    def before(self, task: str) -> dict[str, tuple[float, float]]:
+        """The tasks that end before a task begins; how long before that at least, and at most."""
+        return {self._names[k]: gap for k, gap in self._model.parts.gaps.get(self._index[task], {}).items()}
+
+    def gaps(self, task: str) -> dict[str, tuple[float, float]]:
+        """The same of those tasks alone for which more is said than the order."""
+        return {before: gap for before, gap in self.before(task).items() if gap != (0.0, math.inf)}
+
+    def soon_after(self, tasks: Collection[str]) -> list[str]:
+        """The tasks that must begin within some time after one of these."""
+        found = (j for name in tasks for j in self._soon_after.get(self._index[name], ()))
+        return [self._names[j] for j in dict.fromkeys(found)]
+
+    def by_the_same(self, task: str) -> list[str]:
+        """The tasks that the robots of a task do, if they are done."""
+        return [self._names[k] for k in self._model.same_crew[self._index[task]]]
+
+    def by_others(self, task: str) -> list[str]:
+        """The tasks that none of the robots of a task does."""
+        return [self._names[k] for k in self._model.apart[self._index[task]]]
+
+    def openings(self, task: str) -> Openings:
+        """When a task may begin; empty: at any time."""
+        return self._model.openings[self._index[task]]
+
+    def ends_by_s(self, task: str) -> float:
+        """When a task has ended at the latest; inf: whenever."""
+        return float(self._model.ends_by[self._index[task]])
+
+    def last_begin_s(self, task: str) -> float:
+        """The latest time at which a task may begin, travel and work not counted; inf: whenever."""
+        openings = self.openings(task)
+        return min(openings[-1][1] if openings else math.inf, self.ends_by_s(task))
+
+    def over_by_s(self, robot: Robot) -> float:
+        """When the route of a robot, of the mission or not, is over at the latest; inf: whenever."""
+        known = self._over_by.get(robot.id)
+        if known is None or known[0] is not robot:
+            known = self._over_by[robot.id] = robot, float(self._compiled((), (robot,)).over_by[0])
+        return known[1]
+
+    def next_begin_s(self, tasks: Collection[str], now: float) -> float:
+        """The earliest time, not before `now`, at which all of these may begin; inf if there is none."""
+        begin = now
+        while begin < math.inf:
+            opens = max((_opens(self.openings(name), begin) for name in tasks), default=begin)
+            if opens <= begin:
+                return begin
+            begin = opens
+        return begin
+
+    # What is left of it, where tasks have ended at some times.
+
+    def spans(self, task: str, ends_s: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+        """For the tasks of `gaps` that have ended when a task begins at the earliest and at the latest."""
+        gaps = self.gaps(task).items()
+        return {k: (ends_s[k] + least_s, ends_s[k] + most_s) for k, (least_s, most_s) in gaps if k in ends_s}
+
+    def waits(self, unit: Collection[str], now: float, ends_s: Mapping[str, float]) -> Iterator[Wait]:
+        """What tasks that begin together wait for now, but for robots."""
+        missing = dict.fromkeys(before for name in unit for before in self.before(name) if before not in ends_s)
+        if missing:
+            yield Wait("prerequisite", prerequisite.waits_for(missing))
+        opens = self.next_begin_s(unit, now)
+        if opens > now + TIME_ROUNDING_S:
+            yield Wait("window", window.waits_until(opens), opens)
+        for name in unit:
+            for before, (earliest, _) in self.spans(name, ends_s).items():
+                if earliest > now + TIME_ROUNDING_S:
+                    yield Wait("lag", prerequisite.waits_after(before, earliest), earliest)
+
+    def missed(self, task: str, now: float, ends_s: Mapping[str, float]) -> Iterator[Missed]:
+        """Why a task can never begin any more; nothing: it still can."""
+        if self.next_begin_s([task], now) == math.inf:
+            yield Missed(window.Window.word, window.is_closed(self.openings(task)[-1][1]))
+        if now > (by_s := self.ends_by_s(task)) + TIME_ROUNDING_S:
+            yield Missed(deadline.Deadline.word, deadline.is_over(by_s))
+        for before, (earliest, latest) in self.spans(task, ends_s).items():
+            if self.next_begin_s([task], max(now, earliest)) > latest + TIME_ROUNDING_S:
+                ended_s = ends_s[before]
+                words = prerequisite.not_begun_within(before, latest - ended_s, ended_s)
+                yield Missed(prerequisite.Prerequisite.word, words)
+
+    def missed_opening(self, task: str, meant_s: float, now: float) -> Missed | None:
+        """That the opening in which a task was meant to begin is over, and another one is to come; None: it is not."""
+        openings = self.openings(task)
+        for opens, closes in openings if len(openings) > 1 else ():
+            if opens - TIME_ROUNDING_S <= meant_s <= closes and now > closes + TIME_ROUNDING_S:
+                next_s = self.next_begin_s([task], now)
+                return Missed(window.Window.word, window.next_opens(closes, next_s), next_s)
+        return None
+
+    def begins_by_s(self, task: str, begin_s: float, lasts_s: float, ends_s: Mapping[str, float]) -> float:
+        """Until when a task may be put off that is to begin at a time and lasts so long; inf: for ever."""
+        closes_s = [closes for opens, closes in self.openings(task) if opens <= begin_s <= closes]
+        latest_s = [latest for _, latest in self.spans(task, ends_s).values()]
+        return min([*closes_s, self.ends_by_s(task) - lasts_s, *latest_s])
+
+    def time_limits_s(self, task: str, now: float, ends_s: Mapping[str, float]) -> Iterator[float]:
+        """The last moments that limit a task's times; now, for a gap after a task that has not ended."""
+        yield from (closes + TIME_ROUNDING_S for _, closes in self.openings(task) if closes < math.inf)
+        yield self.ends_by_s(task) + TIME_ROUNDING_S
+        spans = self.spans(task, ends_s)
+        yield from (latest + TIME_ROUNDING_S for _, latest in spans.values())
+        if len(spans) < len(self.gaps(task)):
+            yield now
+
+    def too_late(self, task: str, robot: Robot, begin_s: float, lasts_s: float, home_s: float) -> str:
+        """Why a robot that is at a task at a time cannot do it and be back in time; empty: it can."""
+        arrive_s, begin_s = begin_s, self.next_begin_s([task], begin_s)
+        if begin_s == math.inf:
+            return window.would_be_closed(arrive_s)
+        ends_s, by_s = begin_s + lasts_s, self.ends_by_s(task)
+        if ends_s > by_s + TIME_ROUNDING_S:
+            return deadline.would_end_late(ends_s, by_s)
+        over_by_s, back_s = self.over_by_s(robot), ends_s + home_s
+        return shift.would_be_back_late(back_s, over_by_s) if back_s > over_by_s + TIME_ROUNDING_S else ""
+
+    # Who does it.
+
+    def lacking(self, task: Task, robots: Sequence[Robot]) -> str:
+        """What robots lack to be the crew of a task, in words; empty if they are enough."""
+        asked = task, *robots
+        known = self._lacking.get(task.id)
+        if known is None or len(known[0]) != len(asked) or any(map(is_not, known[0], asked)):
+            known = self._lacking[task.id] = asked, self._lack(task, robots)
+        return known[1]
+
+    def _lack(self, task: Task, robots: Sequence[Robot]) -> str:
+        model = self._compiled((task.waiting_for(()),), robots)
+        if sums := model.sums(0):
+            have = ((name, float(able.sum()), needed) for name, (needed, able) in sums.items())
+            short = [f"{has:g} of {needed:g} {name}" for name, has, needed in have if has < needed * (1 - _ROUNDING)]
+            return ", ".join(short if robots else [*short, "a robot"])
+        seat_of = [seat for seat, (count, _) in enumerate(model.seats(0)) for _ in range(count)]
+        fits = np.array([model.seats(0)[seat][1] for seat in seat_of], dtype=np.bool_)
+        filled = matched(fits.reshape(len(seat_of), len(robots))).values()
+        empty = [seat for place, seat in enumerate(seat_of) if place not in filled]
+        return missing_of_seat(task, empty[0], len(empty)) if empty else ""
+
+    def crew_size(self, task: str) -> int | None:
+        """How many robots do a task; None: as many as are able enough together."""
+        j = self._index[task]
+        return None if self._model.sums(j) else sum(count for count, _ in self._model.seats(j))
+
+
+def _opens(openings: Openings, now: float) -> float:
+    """When the opening is that is the next from a time on."""
+    if not openings:
+        return now
+    return max(now, next((opens for opens, closes in openings if now <= closes + TIME_ROUNDING_S), math.inf))
