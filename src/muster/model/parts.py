@@ -59,6 +59,36 @@ class Meter:
         return cls(name, grows, np.array(most, dtype=np.float64), none, grows, none)
 
 
+@dataclass(frozen=True)
+class Service:
+    """What robots get at a station.
+
+    Parameters
+    ----------
+    rate
+        energy by second; 0: none little by little.
+    until_full_s
+        seconds after which there is as much as the robot has room for, whatever there was; None: never.
+    partial
+        whether a robot may go before it has so much.
+    unloads
+        whether it puts down what no task delivers.
+    slots
+        how many robots at once.
+    """
+
+    rate: float
+    until_full_s: float | None
+    partial: bool
+    unloads: bool
+    slots: int
+
+    @property
+    def gives_energy(self) -> bool:
+        """Whether there is more energy afterwards."""
+        return self.rate > 0 or self.until_full_s is not None
+
+
 @dataclass(eq=False)
 class Parts:
     """What rules have contributed so far, to a model of so many robots and tasks."""
@@ -80,6 +110,8 @@ class Parts:
     meters: list[Meter] = field(default_factory=list)
     energy: dict[int, tuple[float, float]] = field(default_factory=dict)
     free: set[int] = field(default_factory=set)  # robots, or tasks, that the rule which contributes now does not bind
+    word: str = ""  # of the rule which contributes now
+    words: dict[str, str] = field(default_factory=dict)  # by primitive, of the first rule that contributed any
 
     def opens(self, j: int, spans: Iterable[tuple[float, float | None]]) -> None:
         """Task j begins in one of these spans."""
@@ -99,40 +131,48 @@ class Parts:
         if i in self.free:
             return
         self.over_by[i] = min(latest_s, self.over_by.get(i, math.inf))
+        self._says("over_by")
 
     def follows(self, j: int, before: int, least_s: float = 0.0, most_s: float = math.inf) -> None:
         """Task j is done only if the one before it is, and begins so long after that ends, at least and at most."""
-        least, most = self.gaps.setdefault(j, {}).get(before, (0.0, math.inf))
-        self.gaps[j][before] = max(least, least_s), min(most, most_s)
+        self._says("gaps")
+        self._gap(j, before, least_s, most_s)
 
     def begin_together(self, j: int, k: int) -> None:
         """Both tasks are done by different robots, beginning at one moment, or neither is."""
         self.together.append((j, k))
+        self._says("ties")
 
     def by_one_crew(self, j: int, k: int) -> None:
         """The same robots do both, if both are done."""
         _both(self.same_crew, j, k)
+        self._says("ties")
 
     def by_others(self, j: int, k: int) -> None:
         """No robot does both."""
         _both(self.apart, j, k)
+        self._says("ties")
 
     def seat(self, j: int, seats: Seats) -> None:
         """So many robots of each sort do task j, at once."""
         self.seats[j] = seats
+        self._says("crews")
 
     def sum_up(self, j: int, name: str, needed: float, able: Floats) -> None:
         """What the robots that do task j are able to do, (m,), sums up to at least so much."""
         self.sums.setdefault(j, {})[name] = needed, able
+        self._says("crews")
 
     def deliver(self, j: int, pickup: int) -> None:
         """One robot does both, the pickup first, and neither is done alone."""
         self.taken_on_by[j] = pickup
-        self.follows(j, pickup)
+        self._says("transports")
+        self._gap(j, pickup, 0.0, math.inf)
 
     def uses(self, i: int, most: float) -> None:
         """The usage of robot i is at most so much."""
         self.capacity[i] = min(most, self.capacity.get(i, math.inf))
+        self._says("capacity")
 
     def stops(self, i: int, least: int) -> None:
         """Robot i does no task, or at least so many."""
@@ -145,6 +185,14 @@ class Parts:
     def has_energy(self, i: int, room: float, at_start: float) -> None:
         """Robot i has energy for so much usage at most, and at first; stations give it more."""
         self.energy[i] = room, at_start
+        self._says("energy")
+
+    def _gap(self, j: int, before: int, least_s: float, most_s: float) -> None:
+        least, most = self.gaps.setdefault(j, {}).get(before, (0.0, math.inf))
+        self.gaps[j][before] = max(least, least_s), min(most, most_s)
+
+    def _says(self, primitive: str) -> None:
+        self.words.setdefault(primitive, self.word)
 
 
 def _both(tied: dict[int, set[int]], j: int, k: int) -> None:

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from muster.mission.values.arrays import Bools, Floats, Indices
-from muster.model.parts import Gap, Meter, Openings, Parts, Seats
+from muster.model.parts import Gap, Meter, Openings, Parts, Seats, Service
 
 ROUNDING = 2e-9
 """By how much a time may be above a limit, relative; a little more than the judge allows."""
@@ -30,10 +30,18 @@ class PlanModel:
         what the rules have contributed.
     due
         (n,) when a task should have ended: of the objective `lateness`, binding nothing; inf: never late.
+    stations
+        what robots get at each station that there is, whatever they need.
     """
 
     parts: Parts
     due: Floats
+    stations: tuple[Service, ...] = ()
+
+    @property
+    def words(self) -> Mapping[str, str]:
+        """The word of the rule that gives a primitive, the first of them: what reasons name it by."""
+        return self.parts.words
 
     @property
     def tasks(self) -> int:
@@ -77,6 +85,11 @@ class PlanModel:
     def energy(self) -> Floats:
         """(m,) for how much usage a robot's energy is enough at most; inf: for any."""
         return _filled({i: room for i, (room, _) in self.parts.energy.items()}, self.robots, math.inf)
+
+    @property
+    def refills(self) -> bool:
+        """Whether robots get energy on the way."""
+        return any(station.gives_energy for station in self.stations)
 
     @cached_property
     def energy_at_start(self) -> Floats:

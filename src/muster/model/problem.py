@@ -23,7 +23,7 @@ from muster.mission.value_types import shown
 from muster.model.charges import Charge, Drains
 from muster.model.core_arrays import core_arrays
 from muster.model.lengths import Measured
-from muster.model.parts import Parts
+from muster.model.parts import Parts, Service
 from muster.model.plan_model import PlanModel
 from muster.model.rules import RULES, Rule
 from muster.model.subproblem import cut_down
@@ -174,13 +174,13 @@ class Problem:
         """What the rules in force come to."""
         parts = Parts(len(self.robots), len(self.tasks))
         for rule in self.rules:
-            parts.free = {number for word, number in self.freed if word == rule.word}
+            parts.word, parts.free = rule.word, {number for word, number in self.freed if word == rule.word}
             rule.compile(self, parts)
-        parts.free = set()
+        parts.word, parts.free = "", set()
         for j, latest_s in enumerate(self.sooner):
             parts.ends(j, latest_s)
         due = np.array([math.inf if task.due_s is None else task.due_s for task in self.tasks])
-        return PlanModel(parts, due)
+        return PlanModel(parts, due, tuple(map(_service, self.stations)))
 
     @property
     def capacity(self) -> Floats:
@@ -585,3 +585,8 @@ class Problem:
 
 def _floats(values: Iterable[float]) -> Floats:
     return np.array(list(values), dtype=np.float64)
+
+
+def _service(station: Station) -> Service:
+    until_full_s = station.swap_s if station.swaps else None
+    return Service(station.charge_per_s or 0.0, until_full_s, station.partial, station.unloads, station.slots)

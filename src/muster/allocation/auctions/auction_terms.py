@@ -50,6 +50,11 @@ class BidTerms:
         """Of WINNERS."""
         return WINNERS[0]
 
+    @property
+    def energy_weight(self) -> float:
+        """How much the share counts of its energy that a robot has used up."""
+        return self.battery_weight
+
 
 @dataclass(frozen=True, kw_only=True)
 class Terms(BidTerms):

@@ -142,9 +142,9 @@ class Auctioneer:
 
     def _weighted(self, bids: Floats, robots: int | slice, tasks: int | slice | Indices) -> Floats:
         terms, penalty = self._terms, np.zeros(())
-        if terms.battery_weight:
+        if terms.energy_weight:
             shares = self._problem.drains.shares(self._usages[robots], robots)
-            penalty = penalty + terms.battery_weight * shares
+            penalty = penalty + terms.energy_weight * shares
         if terms.suitability_weight:
             penalty = penalty + terms.suitability_weight * lack_penalty(self._problem.suitability[robots, tasks])
         if terms.quality_weight:

@@ -2,7 +2,7 @@
 
 Sequential single-item auction with bids of coalitions, as coalitions are formed task by task in [shehory1998] and
 [vig2006]: in each round every coalition that is worth a look bids for every unit, and one unit is sold. A bid is what
-the schedule allows: the unit is put where its windows, deadlines, lags and what waits for it leave a place. Of a team's
+the schedule allows: the unit is put where its times, those before it and what waits for it leave a place. Of a team's
 task the coalition that costs least bids, and beside it, for each of its members, the one that costs least without it.
 
 An auction never takes a task back. So bids that leave time for what is not sold yet come first: those by which a unit,
@@ -241,9 +241,9 @@ class CoalitionAuction:
 
     def _penalty(self, robot: int, task: int) -> float:
         terms, penalty = self._terms, 0.0
-        if terms.battery_weight:
+        if terms.energy_weight:
             usage = np.array([self.usage(robot)])
-            penalty += terms.battery_weight * float(self._problem.drains.shares(usage, slice(robot, robot + 1))[0])
+            penalty += terms.energy_weight * float(self._problem.drains.shares(usage, slice(robot, robot + 1))[0])
         if terms.suitability_weight:
             penalty += terms.suitability_weight * float(lack_penalty(self._problem.suitability[robot, task]))
         if terms.quality_weight:

@@ -1,7 +1,7 @@
 """How much energy a robot can have at most, by when it is at a place: exact, or above what is true, never below.
 
 A curve is a list of points (time, energy). It is concave, rises from point to point, and is constant after the last
-one: who charges longer is there later. Before the first point the robot cannot be there.
+one: who is filled longer is there later. Before the first point the robot cannot be there.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def energy_at(curve: Curve, time: float) -> float:
     return energy + (more - energy) * (time - low) / (high - low)
 
 
-def shifted(curve: Curve, seconds: float, energy: float) -> list[tuple[float, float]]:
+def moved(curve: Curve, seconds: float, energy: float) -> list[tuple[float, float]]:
     """Return the curve once so much time and energy is gone."""
     return [(time + seconds, level - energy) for time, level in curve]
 
@@ -42,7 +42,7 @@ def with_at_least(curve: Curve, energy: float) -> list[tuple[float, float]]:
 
 
 def begun(curve: Curve, opens: float, closes: float) -> list[tuple[float, float]]:
-    """Return the part within a time window: the robot waits for its begin, and charges until then."""
+    """Return the part within a span: the robot waits for its begin, and goes on filling until then."""
     if not curve or max(opens, curve[0][0]) > closes:
         return []
     first = max(opens, curve[0][0])
@@ -51,8 +51,8 @@ def begun(curve: Curve, opens: float, closes: float) -> list[tuple[float, float]
     return [(first, energy_at(curve, first)), *inside, *last]
 
 
-def charged(curve: Curve, rate: float, full: float) -> list[tuple[float, float]]:
-    """Return the curve after a charge of any length."""
+def filled_partly(curve: Curve, rate: float, full: float) -> list[tuple[float, float]]:
+    """Return the curve once a robot was filled for any length of time."""
     kept = [curve[0]]
     for (low, energy), (high, more) in itertools.pairwise(curve):
         if more - energy <= rate * (high - low):
@@ -62,8 +62,8 @@ def charged(curve: Curve, rate: float, full: float) -> list[tuple[float, float]]
     return kept if level >= full else [*kept, (time + (full - level) / rate, full)]
 
 
-def filled(curve: Curve, rate: float, full: float) -> list[tuple[float, float]]:
-    """Return the curve after a charge until the battery is full."""
+def filled_up(curve: Curve, rate: float, full: float) -> list[tuple[float, float]]:
+    """Return the curve once a robot was filled until there is no more room."""
     return [(min(time + max(0.0, full - level) / rate for time, level in curve), full)]
 
 
@@ -73,4 +73,4 @@ def covers(curve: Curve, other: Curve) -> bool:
 
 
 NEVER_EMPTY = math.inf
-"""The energy of a robot without a battery."""
+"""The energy of a robot that never runs out of it."""

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from muster import core
 from muster.mission.model import Robot
+from muster.mission.stations import Battery as BatteryNow
 from muster.model.parts import Parts
-from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot
+from muster.model.rules.rule import Bools, Change, Found, Limits, Outlook, Question, Rule, Tried, first_robot
 
 
 @dataclass(frozen=True)
 class LargerBattery(Change):
-    """What the robot's battery would have to hold; inf: without an end."""
+    """What the robot's battery would have to hold, and the one that it has now; inf: without an end."""
 
     capacity: float
     unit: str
+    now: BatteryNow
 
     @property
     def plain(self) -> float:
@@ -29,17 +30,13 @@ class LargerBattery(Change):
         return f"a battery of {self.capacity:.2f} {self.unit}"
 
     def robot(self, robot: Robot) -> Robot:
-        if robot.battery is None or math.isinf(self.capacity):
-            return replace(robot, battery=None)
-        return replace(robot, battery=replace(robot.battery, capacity=self.capacity))
+        larger = None if math.isinf(self.capacity) else replace(self.now, capacity=self.capacity)
+        return replace(robot, battery=larger)
 
-    def for_usage(self, robot: Robot, usage: float) -> LargerBattery | None:
-        """What is enough for a route that uses so much, without calls; None: the battery as it is."""
-        battery = robot.battery
-        if battery is None:
-            return None
-        needed = usage / (battery.at_start - battery.reserve)
-        return replace(self, capacity=needed) if needed > battery.capacity else None
+    def narrowed(self, found: Found) -> LargerBattery | None:
+        """What is enough for the route without calls."""
+        needed = found.usage / (self.now.at_start - self.now.reserve)
+        return replace(self, capacity=needed) if needed > self.now.capacity else None
 
 
 class Battery(Rule):
@@ -52,6 +49,7 @@ class Battery(Rule):
     of_the_team = True
     kept_by_calls = True
     key = "battery"
+    resource = ("battery", "battery")
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         if not problem.holds(self.word):
@@ -81,17 +79,17 @@ class Battery(Rule):
             return f"takes at least {least:.2f} {unit}, {holds}"
         return f"takes at least {least:.2f} {unit}, {holds}, and no station is near enough"
 
-    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
-        usage, unit = min(found.usages[i] for _, found in places), problem.usage_unit
-        holds = f"its battery holds {energy_at_start(problem, i):.2f} {unit} above its reserve"
+    def broken_at(self, tried: Tried) -> str:
+        problem, unit = tried.problem, tried.problem.usage_unit
+        holds = f"its battery holds {energy_at_start(problem, tried.i):.2f} {unit} above its reserve"
         stations = ", and no calls at stations make up for that" if problem.mission.stations else ""
-        return f"at least {usage:.2f} {unit} with it, {holds}{stations}"
+        return f"at least {tried.usage:.2f} {unit} with it, {holds}{stations}"
 
-    def lifted(self, problem: Question, i: int) -> LargerBattery | None:
+    def lifted(self, problem: Question, i: int, j: int, done: Collection[int]) -> LargerBattery | None:
         battery = problem.robots[i].battery
         if battery is None or battery.at_start <= battery.reserve:
             return None
-        return LargerBattery(math.inf, problem.usage_unit)
+        return LargerBattery(math.inf, problem.usage_unit, battery)
 
 
 def energy_room(robot: Robot) -> float:

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from muster import core
 from muster.model.parts import Parts
-from muster.model.rules.rule import ROUNDING, Bools, InPlan, Limits, Outlook, Question, Routes, Rule
+from muster.model.rules.rule import ROUNDING, Bools, InPlan, Limits, Outlook, Question, Rule, Tried
 
 
 class Capacity(Rule):
@@ -21,6 +19,7 @@ class Capacity(Rule):
     lifted_late = True
     of_a_route = True
     of_the_team = True
+    resource = ("capacity", "work capacity")
 
     def compile(self, problem: Question, parts: Parts) -> None:
         usable = 1.0 - problem.mission.rules.capacity_reserve
@@ -45,10 +44,9 @@ class Capacity(Rule):
             return None
         return _too_much(problem, i, insertion.usage)
 
-    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
-        usage = min(found.usages[i] for _, found in places)
-        if usage > problem.capacity[i]:
-            return _too_much(problem, i, usage)
+    def broken_at(self, tried: Tried) -> str:
+        if tried.usage > tried.problem.capacity[tried.i]:
+            return _too_much(tried.problem, tried.i, tried.usage)
         return "with its team one of the robots would need more than its capacity"
 
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
-from muster import core
 from muster.mission.goods import by_commodity, shown_amounts
 from muster.mission.model import Robot, Task
 from muster.model.parts import Meter, Parts
-from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot, first_task
+from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Rule, Tried, first_robot, first_task
 
 Amounts = Mapping[str, float]
 
@@ -103,7 +102,7 @@ class Load(Rule):
         other = problem.partners[j]
         return any(problem.tasks[k].load is not None for k in (j, other) if k is not None)
 
-    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
+    def broken_at(self, tried: Tried) -> str:
         return "at every place in its route it would carry more than it can, or put down more than it has"
 
     def change(self, problem: Question, robot: Robot, task: Task) -> MoreRoom | None:

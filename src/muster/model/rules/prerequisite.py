@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
+from muster.mission.model import Task
 from muster.model.parts import Parts
 from muster.model.rules.rule import (
     Bools,
@@ -15,6 +17,7 @@ from muster.model.rules.rule import (
     Outlook,
     Question,
     Rule,
+    Tried,
     first_task,
     listed,
 )
@@ -65,3 +68,14 @@ class Prerequisite(Rule):
         if plan.insertion(i, j) is None:
             return "at every place in its route the prerequisites would wait in a circle"
         return None
+
+    def without_limit(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
+        """With tasks that may begin however long after others."""
+        lags = [{name: replace(lag, within_s=None) for name, lag in task.lags.items()} for task in tasks]
+        return tuple(replace(task, lags=own) for task, own in zip(tasks, lags, strict=True))
+
+    def broken_at(self, tried: Tried) -> str:
+        return "at every place in its route a task would begin longer after its prerequisite than within_s allows"
+
+    def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
+        return task.waiting_for(()) if task.id in begun else task
