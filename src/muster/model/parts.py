@@ -136,7 +136,8 @@ class Parts:
     def follows(self, j: int, before: int, least_s: float = 0.0, most_s: float = math.inf) -> None:
         """Task j is done only if the one before it is, and begins so long after that ends, at least and at most."""
         self._says("gaps")
-        self._gap(j, before, least_s, most_s)
+        least, most = self.gaps.setdefault(j, {}).get(before, (0.0, math.inf))
+        self.gaps[j][before] = max(least, least_s), min(most, most_s)
 
     def begin_together(self, j: int, k: int) -> None:
         """Both tasks are done by different robots, beginning at one moment, or neither is."""
@@ -167,7 +168,6 @@ class Parts:
         """One robot does both, the pickup first, and neither is done alone."""
         self.taken_on_by[j] = pickup
         self._says("transports")
-        self._gap(j, pickup, 0.0, math.inf)
 
     def uses(self, i: int, most: float) -> None:
         """The usage of robot i is at most so much."""
@@ -186,10 +186,6 @@ class Parts:
         """Robot i has energy for so much usage at most, and at first; stations give it more."""
         self.energy[i] = room, at_start
         self._says("energy")
-
-    def _gap(self, j: int, before: int, least_s: float, most_s: float) -> None:
-        least, most = self.gaps.setdefault(j, {}).get(before, (0.0, math.inf))
-        self.gaps[j][before] = max(least, least_s), min(most, most_s)
 
     def _says(self, primitive: str) -> None:
         self.words.setdefault(primitive, self.word)

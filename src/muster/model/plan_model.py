@@ -111,11 +111,18 @@ class PlanModel:
 
     def gaps(self, j: int) -> list[Gap]:
         """The tasks that are done before a task; how long after the end of each it begins, at least and at most."""
-        return [(k, *self.parts.gaps[j][k]) for k in sorted(self.parts.gaps.get(j, ()))]
+        own = self.parts.gaps.get(j, {})
+        return [(k, *own.get(k, (0.0, math.inf))) for k in self.awaited[j]]
 
     @cached_property
     def awaited(self) -> list[list[int]]:
-        """For each task those that are done before it."""
+        """For each task those that are done before it, also the one that takes on board what it delivers."""
+        pairs = zip(self.stated, self.pickups, strict=True)
+        return [sorted({*before, pickup} - {-1}) for before, pickup in pairs]
+
+    @cached_property
+    def stated(self) -> list[list[int]]:
+        """For each task those that rules say come before it."""
         return [sorted(self.parts.gaps.get(j, ())) for j in range(self.tasks)]
 
     @cached_property

@@ -192,11 +192,10 @@ class Problem:
         """For each task those that are done before it."""
         return self.model.awaited
 
-    @cached_property
+    @property
     def prerequisites(self) -> list[list[int]]:
-        """The same without the task whose load it delivers."""
-        found = zip(self.awaited, self.model.pickups, strict=True)
-        return [[k for k in before if k != pickup] for before, pickup in found]
+        """The same without those that are there only as they take on what a task delivers."""
+        return self.model.stated
 
     @property
     def partners(self) -> list[int | None]:

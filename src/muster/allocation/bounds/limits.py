@@ -161,7 +161,7 @@ class Limits:
             needed, waiting = {j}, [j]
             while waiting:
                 k = waiting.pop()
-                new = {*self.problem.prerequisites[k], *self.rules.units[self.rules.unit[k]]} - needed
+                new = {*self.rules.awaited[k], *self.rules.units[self.rules.unit[k]]} - needed
                 needed |= new
                 waiting += new
             self._needed[j] = sorted(needed - {j})
