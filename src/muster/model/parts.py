@@ -17,6 +17,9 @@ from muster.mission.values.arrays import Bools, Floats
 Openings = list[tuple[float, float]]
 """When something may begin: spans from, until, seconds, sorted and apart."""
 
+NEVER: Openings = [(math.inf, math.inf)]
+"""No span at all would say that it may begin at any time."""
+
 Seats = list[tuple[int, Bools]]
 """How many robots of which: a count, and (m,) who is fit."""
 
@@ -199,4 +202,4 @@ def _both(tied: dict[int, set[int]], j: int, k: int) -> None:
 def _common(some: Openings, others: Openings) -> Openings:
     """What is in both."""
     pairs = ((max(a, c), min(b, d)) for a, b in some for c, d in others)
-    return sorted((opens, closes) for opens, closes in pairs if opens <= closes)
+    return sorted((opens, closes) for opens, closes in pairs if opens <= closes) or NEVER
