@@ -113,7 +113,6 @@ class Parts:
     meters: list[Meter] = field(default_factory=list)
     energy: dict[int, tuple[float, float]] = field(default_factory=dict)
     free: set[int] = field(default_factory=set)  # robots, or tasks, that the rule which contributes now does not bind
-    word: str = ""  # of the rule which contributes now
     words: dict[str, str] = field(default_factory=dict)  # by primitive, of the first rule that contributed any
 
     def opens(self, j: int, spans: Iterable[tuple[float, float | None]]) -> None:
@@ -134,48 +133,39 @@ class Parts:
         if i in self.free:
             return
         self.over_by[i] = min(latest_s, self.over_by.get(i, math.inf))
-        self._says("over_by")
 
     def follows(self, j: int, before: int, least_s: float = 0.0, most_s: float = math.inf) -> None:
         """Task j is done only if the one before it is, and begins so long after that ends, at least and at most."""
-        self._says("gaps")
         least, most = self.gaps.setdefault(j, {}).get(before, (0.0, math.inf))
         self.gaps[j][before] = max(least, least_s), min(most, most_s)
 
     def begin_together(self, j: int, k: int) -> None:
         """Both tasks are done by different robots, beginning at one moment, or neither is."""
         self.together.append((j, k))
-        self._says("ties")
 
     def by_one_crew(self, j: int, k: int) -> None:
         """The same robots do both, if both are done."""
         _both(self.same_crew, j, k)
-        self._says("ties")
 
     def by_others(self, j: int, k: int) -> None:
         """No robot does both."""
         _both(self.apart, j, k)
-        self._says("ties")
 
     def seat(self, j: int, seats: Seats) -> None:
         """So many robots of each sort do task j, at once."""
         self.seats[j] = seats
-        self._says("crews")
 
     def sum_up(self, j: int, name: str, needed: float, able: Floats) -> None:
         """What the robots that do task j are able to do, (m,), sums up to at least so much."""
         self.sums.setdefault(j, {})[name] = needed, able
-        self._says("crews")
 
     def deliver(self, j: int, pickup: int) -> None:
         """One robot does both, the pickup first, and neither is done alone."""
         self.taken_on_by[j] = pickup
-        self._says("transports")
 
     def uses(self, i: int, most: float) -> None:
         """The usage of robot i is at most so much."""
         self.capacity[i] = min(most, self.capacity.get(i, math.inf))
-        self._says("capacity")
 
     def stops(self, i: int, least: int) -> None:
         """Robot i does no task, or at least so many."""
@@ -188,10 +178,10 @@ class Parts:
     def has_energy(self, i: int, room: float, at_start: float) -> None:
         """Robot i has energy for so much usage at most, and at first; stations give it more."""
         self.energy[i] = room, at_start
-        self._says("energy")
 
-    def _says(self, primitive: str) -> None:
-        self.words.setdefault(primitive, self.word)
+    def named(self, word: str) -> None:
+        """Remember the word of the rule that has contributed, for the primitives of which there were none before."""
+        self.words |= {name: word for name, given in vars(self).items() if given and name not in self.words}
 
 
 def _both(tied: dict[int, set[int]], j: int, k: int) -> None:

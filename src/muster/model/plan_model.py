@@ -38,10 +38,9 @@ class PlanModel:
     due: Floats
     stations: tuple[Service, ...] = ()
 
-    @property
-    def words(self) -> Mapping[str, str]:
-        """The word of the rule that gives a primitive, the first of them: what reasons name it by."""
-        return self.parts.words
+    def word_of(self, *primitives: str) -> str:
+        """The word of the rule that gives one of these parts, by which reasons name it; empty: none does."""
+        return next((self.parts.words[name] for name in primitives if name in self.parts.words), "")
 
     @property
     def tasks(self) -> int:

@@ -174,9 +174,10 @@ class Problem:
         """What the rules in force come to."""
         parts = Parts(len(self.robots), len(self.tasks))
         for rule in self.rules:
-            parts.word, parts.free = rule.word, {number for word, number in self.freed if word == rule.word}
+            parts.free = {number for word, number in self.freed if word == rule.word}
             rule.compile(self, parts)
-        parts.word, parts.free = "", set()
+            parts.named(rule.word)
+        parts.free = set()
         for j, latest_s in enumerate(self.sooner):
             parts.ends(j, latest_s)
         due = np.array([math.inf if task.due_s is None else task.due_s for task in self.tasks])

@@ -51,9 +51,9 @@ class BidTerms:
         return WINNERS[0]
 
     @property
-    def energy_weight(self) -> float:
-        """How much the share counts of its energy that a robot has used up."""
-        return self.battery_weight
+    def weights(self) -> tuple[float, float, float]:
+        """What counts of the energy that a robot has used up, and of the suitability and quality that it lacks."""
+        return self.battery_weight, self.suitability_weight, self.quality_weight
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -181,12 +181,12 @@ def _resources(problem: Problem, possible: Bools, tasks: Sequence[int]) -> Itera
     longest = seconds.max(axis=0, initial=0.0)  # a team takes as long as its slowest member
     last = np.array([_last_end(problem, [j for j in tasks if possible[i, j]], longest) for i in robots])
     has = np.maximum(0.0, np.minimum(until, last) - start)
-    yield _Resource(rules.words.get("over_by", _OF_TASKS), _SECONDS, problem, possible, seconds, has, last < until)
+    yield _Resource(rules.word_of("over_by") or _OF_TASKS, _SECONDS, problem, possible, seconds, has, last < until)
     usage = seconds if problem.in_time else np.array([problem.work_usage(i) for i in robots])
     unit = _SECONDS if problem.in_time else problem.usage_unit
-    if word := rules.words.get("capacity"):
+    if word := rules.word_of("capacity"):
         yield _Resource(word, unit, problem, possible, usage, problem.capacity)
-    if (word := rules.words.get("energy")) and not rules.refills:
+    if (word := rules.word_of("energy")) and not rules.refills:
         has = np.minimum(rules.energy_at_start, problem.capacity)
         yield _Resource(word, unit, problem, possible, usage, has)
 

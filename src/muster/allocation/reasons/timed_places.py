@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
@@ -14,6 +14,9 @@ from muster.allocation.reasons.timed_teams import Member, TimedTeams
 from muster.model.problem import Problem
 from muster.model.rules import Rule
 from muster.model.rules.rule import InPlan, Tried
+
+_TIES = ("together", "same_crew", "apart")
+"""What ties tasks to others by their robots or begins."""
 
 _MOST_PLACES = 400  # of a team, the earliest first, that are looked at
 _MOST_TEAMS = 60
@@ -51,6 +54,7 @@ class TimedPlaces(TimedTeams):
         super().__init__(problem, routes)
         self._looked_at_some = set[tuple[int, int]]()  # pairs of which not all places are looked at
         self.outcome = cache(self._outcome)
+        self._word_of = problem.model.word_of
         self.without = cache(self._without)
         self.bounds_without = cache(lambda words: RouteBounds(self.without(words)))
 
@@ -71,7 +75,7 @@ class TimedPlaces(TimedTeams):
     def _outcome(self, i: int, j: int) -> Outcome:
         """The place of task j with the least usage of robot i, or why there is none."""
         if missing := self._left_out_with(j):
-            return Outcome(word=self._words["ties"], detail=missing)
+            return Outcome(word=self._word_of(*_TIES), detail=missing)
         if missing := self._transport_lacks(i, j):
             return Outcome(word=self._word_of_whole(j), detail=missing)
         places = self.places(i, j)
@@ -82,12 +86,8 @@ class TimedPlaces(TimedTeams):
             return Outcome()
         if not places:
             detail = "no team for it keeps its relations to the tasks of the plan"
-            return Outcome(word=self._words.get("ties", ""), detail=detail)
+            return Outcome(word=self._word_of(*_TIES), detail=detail)
         return self._refused(i, j, places)
-
-    @property
-    def _words(self) -> Mapping[str, str]:
-        return self.problem.model.words
 
     def _left_out_with(self, j: int) -> str:
         """What the tasks that begin together with a task lack; empty: nothing."""
@@ -103,8 +103,8 @@ class TimedPlaces(TimedTeams):
     def _word_of_whole(self, j: int) -> str:
         """The rule by which a task can only be done together with the tasks of a transport."""
         if self.problem.partners[j] is not None:
-            return self._words["transports"]
-        return self._words["ties" if self.problem.model.beginning_with(j) else "gaps"]
+            return self._word_of("taken_on_by")
+        return self._word_of(*(_TIES if self.problem.model.beginning_with(j) else ("gaps",)))
 
     def _transport_lacks(self, i: int, j: int) -> str:
         """What keeps robot i from the other task of a transport; empty: nothing."""
@@ -166,11 +166,11 @@ class TimedPlaces(TimedTeams):
         """The rule by which other robots must do something beside one that does a task; empty: none."""
         rules = self.problem.model
         if rules.beginning_with(j):
-            return self._words["ties"]
+            return self._word_of(*_TIES)
         if rules.is_for_team(j):
-            return self._words["crews"]
+            return self._word_of("seats", "sums")
         if len(self.problem.with_partner(j)) > 2:
-            return self._words.get("ties") or self._words["transports"]
+            return self._word_of(*_TIES, "taken_on_by")
         return ""
 
     def _is_by_itself(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> bool:

@@ -2,18 +2,39 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
-from muster.allocation.remedies.remedy import Remedy
+from muster.allocation.allocator import Routes
+from muster.allocation.bounds.feasibility import impossible
+from muster.allocation.remedies.remedy import Before, Remedy
 from muster.mission.model import Robot, Task
 from muster.model.problem import Problem
 from muster.model.rules import Change
+from muster.model.rules.capacity import CapacityChange
 
 
-def pair_changes(problem: Problem, robot: Robot, task: Task) -> dict[str, Change]:
+def _pair_changes(problem: Problem, robot: Robot, task: Task) -> dict[str, Change]:
     """By the words of rules the changes with which the robot may do the task."""
     found = {rule.word: rule.change(problem, robot, task) for rule in problem.rules if rule.key is not None}
     return {word: change for word, change in found.items() if change is not None}
+
+
+def as_they_are(problem: Problem, routes: Routes, i: int, j: int) -> Remedy:
+    """What stands between the robot and the task by themselves, and the prerequisites that are left out."""
+    robot, done = problem.robots[i], {k for route in routes for k in route}
+    own = problem.with_partner(j)
+    awaited = problem.closed([before for k in own for before in problem.prerequisites[k]])
+    missing = [k for k in awaited if k not in done and k not in own]
+    never = {item.task for item in impossible(problem)} if missing else set()
+    now = None if math.isinf(problem.capacity[i]) else robot.work_capacity
+    return Remedy(
+        robot=robot.id,
+        changes=_pair_changes(problem, robot, problem.tasks[j]),
+        before=tuple(Before(problem.tasks[k].id, problem.tasks[k].id not in never) for k in missing),
+        unable=problem.action_refusal(i, j) or "",
+        capacity=CapacityChange(now=now),
+    )
 
 
 def changed(problem: Problem, remedy: Remedy, i: int, j: int) -> Problem:

@@ -6,16 +6,15 @@ no more: the mission so changed has an admissible plan with the task, which was 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from muster import core
 from muster.allocation.allocator import Routes
-from muster.allocation.bounds.feasibility import impossible, limits_of
+from muster.allocation.bounds.feasibility import limits_of
 from muster.allocation.reasons.timed_places import Place, TimedPlaces
-from muster.allocation.remedies.changed_problem import changed, pair_changes, with_capacity
-from muster.allocation.remedies.remedy import Before, Remedy, more_calls
+from muster.allocation.remedies.changed_problem import as_they_are, changed, with_capacity
+from muster.allocation.remedies.remedy import Remedy, more_calls
 from muster.allocation.search.witness_plans import Judge, attempt, bare_plan
 from muster.model.problem import Problem
 from muster.model.rules import Change
@@ -34,7 +33,7 @@ def timed_remedy(
     due: Callable[[], bool] = lambda: False,
 ) -> Remedy:
     """The remedy with which robot i can do task j: beside the rest of the plan as it is, else in another plan."""
-    first = _first(problem, routes, i, j)
+    first = as_they_are(problem, routes, i, j)
     if first.unable:
         return replace(first, impossible=True)
     moved = problem.with_partner(j)
@@ -48,23 +47,6 @@ def timed_remedy(
         if found is not None:
             return found
     return replace(first, searched=searched)
-
-
-def _first(problem: Problem, routes: Routes, i: int, j: int) -> Remedy:
-    """What stands between the robot and the task by themselves, and the prerequisites that are left out."""
-    robot, done = problem.robots[i], {k for route in routes for k in route}
-    own = problem.with_partner(j)
-    awaited = problem.closed([before for k in own for before in problem.prerequisites[k]])
-    missing = [k for k in awaited if k not in done and k not in own]
-    never = {item.task for item in impossible(problem)} if missing else set()
-    now = None if math.isinf(problem.capacity[i]) else robot.work_capacity
-    return Remedy(
-        robot=robot.id,
-        changes=pair_changes(problem, robot, problem.tasks[j]),
-        before=tuple(Before(problem.tasks[k].id, problem.tasks[k].id not in never) for k in missing),
-        unable=problem.action_refusal(i, j) or "",
-        capacity=CapacityChange(now=now),
-    )
 
 
 def _wider(problem: Problem, first: Remedy, rest: Routes, i: int, j: int) -> Iterator[Remedy]:
