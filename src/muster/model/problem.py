@@ -189,19 +189,9 @@ class Problem:
         return self.model.capacity
 
     @property
-    def awaited(self) -> list[list[int]]:
-        """For each task those that are done before it."""
-        return self.model.awaited
-
-    @property
     def prerequisites(self) -> list[list[int]]:
-        """The same without those that are there only as they take on what a task delivers."""
+        """For each task those before it, but those that are so only as they take on what it delivers."""
         return self.model.stated
-
-    @property
-    def partners(self) -> list[int | None]:
-        """For each task the other one of its transport: which takes on what it delivers, or delivers its load."""
-        return self.model.partners
 
     def with_partner(self, j: int) -> tuple[int, ...]:
         """A task, with all that can only be done together with it where transports are among them, in order.
@@ -209,15 +199,15 @@ class Problem:
         Those are the other task of its transport, what begins with either, and what waits for one of them while
         another waits for it.
         """
-        whole = (
-            [k for k in self.closed([j]) if j in self.closed([k])] if any(k is not None for k in self.partners) else []
-        )
-        if all(self.partners[k] is None for k in whole):
+        partners = self.model.partners
+        tied = self.closed([j]) if self.model.parts.taken_on_by else []
+        whole = [k for k in tied if j in self.closed([k])]
+        if all(partners[k] is None for k in whole):
             return (j,)
         ordered: list[int] = []
         while len(ordered) < len(whole):
             left = [k for k in whole if k not in ordered]
-            free = [k for k in left if not set(self.awaited[k]).intersection(left)]
+            free = [k for k in left if not set(self.model.awaited[k]).intersection(left)]
             ordered.append(min(free or left))
         return tuple(ordered)
 
@@ -227,7 +217,7 @@ class Problem:
         waiting = list(needed)
         while waiting:
             j = waiting.pop()
-            partner = self.partners[j]
+            partner = model.partners[j]
             new = {*self.prerequisites[j], *model.beginning_with(j), *([] if partner is None else [partner])} - needed
             needed |= new
             waiting += new
@@ -366,7 +356,7 @@ class Problem:
             priority=_floats(t.priority for t in self.tasks),
             allowed=self.allowed_by_kind,
             kind=self.kinds,
-            prerequisites=self.awaited,
+            prerequisites=self.model.awaited,
             entry=self._entries,
             exit=self._exits,
             place_class=self._task_geometry.classes,

@@ -7,7 +7,6 @@ one: who is filled longer is there later. Before the first point the robot canno
 from __future__ import annotations
 
 import itertools
-import math
 from bisect import bisect_right
 from collections.abc import Sequence
 
@@ -70,7 +69,3 @@ def filled_up(curve: Curve, rate: float, full: float) -> list[tuple[float, float
 def covers(curve: Curve, other: Curve) -> bool:
     """Whether there is at least as much energy as on the other curve at all times."""
     return curve[0][0] <= other[0][0] and all(energy_at(curve, time) >= energy for time, energy in other)
-
-
-NEVER_EMPTY = math.inf
-"""The energy of a robot that never runs out of it."""

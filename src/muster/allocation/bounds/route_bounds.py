@@ -112,7 +112,7 @@ class _Robot:
         self._left = 0
 
     def _first(self) -> _Label:
-        at_start = float(self._problem.model.energy_at_start[self._i]) if self._drains else energy_curve.NEVER_EMPTY
+        at_start = float(self._problem.model.energy_at_start[self._i])
         nothing = (0.0,) * len(self._goods)
         return _Label(0.0, 0.0, 0.0, 0.0, [(self._robot.available_from_s, at_start)], nothing)
 

@@ -90,7 +90,7 @@ def _done_before(problem: Problem, j: int) -> set[int]:
     found, waiting = {j}, [j]
     while waiting:
         k = waiting.pop()
-        new = {*problem.awaited[k], *problem.model.beginning_with(k)} - found
+        new = {*problem.model.awaited[k], *problem.model.beginning_with(k)} - found
         found |= new
         waiting += new
     return found

@@ -102,13 +102,13 @@ class TimedPlaces(TimedTeams):
 
     def _word_of_whole(self, j: int) -> str:
         """The rule by which a task can only be done together with the tasks of a transport."""
-        if self.problem.partners[j] is not None:
+        if self.problem.model.partners[j] is not None:
             return self._word_of("taken_on_by")
         return self._word_of(*(_TIES if self.problem.model.beginning_with(j) else ("gaps",)))
 
     def _transport_lacks(self, i: int, j: int) -> str:
         """What keeps robot i from the other task of a transport; empty: nothing."""
-        problem, other, whole = self.problem, self.problem.partners[j], self.problem.with_partner(j)
+        problem, other, whole = self.problem, self.problem.model.partners[j], self.problem.with_partner(j)
         if other is not None and (not problem.may(i, other) or not self._keeps_relations(i, other)):
             return f"comes with {problem.tasks[other].id}, which it cannot do"
         for one in whole if len(whole) > 1 else ():

@@ -85,8 +85,7 @@ def smallest(found: Sequence[Remedy]) -> Remedy | None:
 def _needs_as_is(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int, Remedy]]:
     """For each robot the changes that it needs, and the capacity with which its route has room; not judged yet."""
     inspection = core.Inspection(problem.core, _without(routes, j))
-    for i in range(len(problem.robots)):
-        first = as_they_are(problem, routes, i, j)
+    for i, first in enumerate(as_they_are(problem, routes, j, range(len(problem.robots)))):
         place = None if first.before else _cheapest_place(inspection, i, j)
         room = None if place is None else _work_capacity(problem, place[1])
         now = first.capacity.now

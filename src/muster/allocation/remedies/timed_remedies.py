@@ -33,7 +33,7 @@ def timed_remedy(
     due: Callable[[], bool] = lambda: False,
 ) -> Remedy:
     """The remedy with which robot i can do task j: beside the rest of the plan as it is, else in another plan."""
-    first = as_they_are(problem, routes, i, j)
+    first = next(as_they_are(problem, routes, j, [i]))
     if first.unable:
         return replace(first, impossible=True)
     moved = problem.with_partner(j)

@@ -58,8 +58,9 @@ class Battery(Rule):
 
     def compile(self, problem: Question, parts: Parts) -> None:
         for i, robot in enumerate(problem.robots):
-            if robot.battery is not None:
-                parts.has_energy(i, energy_room(robot), energy_at_start(problem, i))
+            if (battery := robot.battery) is not None:
+                level = problem.levels[i] if problem.levels else battery.level_at_start
+                parts.has_energy(i, battery.capacity - battery.least, max(0.0, level - battery.least))
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
         return problem.robots[i].battery if problem.holds(self.word) else None
@@ -74,14 +75,14 @@ class Battery(Rule):
         if battery is None or problem.energy_reaches[i, j] or math.isinf(outlook.least):
             return None
         least, unit = outlook.least, problem.usage_unit
-        holds = f"its battery holds {energy_at_start(problem, i):.2f} {unit} above its reserve"
+        holds = f"its battery holds {problem.model.energy_at_start[i]:.2f} {unit} above its reserve"
         if not problem.mission.stations:
             return f"takes at least {least:.2f} {unit}, {holds}"
         return f"takes at least {least:.2f} {unit}, {holds}, and no station is near enough"
 
     def broken_at(self, tried: Tried) -> str:
         problem, unit = tried.problem, tried.problem.usage_unit
-        holds = f"its battery holds {energy_at_start(problem, tried.i):.2f} {unit} above its reserve"
+        holds = f"its battery holds {problem.model.energy_at_start[tried.i]:.2f} {unit} above its reserve"
         stations = ", and no calls at stations make up for that" if problem.mission.stations else ""
         return f"at least {tried.usage:.2f} {unit} with it, {holds}{stations}"
 
@@ -90,17 +91,3 @@ class Battery(Rule):
         if battery is None or battery.at_start <= battery.reserve:
             return None
         return LargerBattery(math.inf, problem.usage_unit, battery)
-
-
-def energy_room(robot: Robot) -> float:
-    """Return what a robot's battery holds above its reserve when it is full; inf without a battery."""
-    return math.inf if robot.battery is None else robot.battery.capacity - robot.battery.least
-
-
-def energy_at_start(problem: Question, i: int) -> float:
-    """Return what it holds above its reserve at first."""
-    battery = problem.robots[i].battery
-    if battery is None:
-        return math.inf
-    level = problem.levels[i] if problem.levels else battery.level_at_start
-    return max(0.0, level - battery.least)

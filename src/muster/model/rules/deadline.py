@@ -59,32 +59,24 @@ class Deadline(Latest):
         return np.asarray(limits.pair_end <= limits.rules.ends_by * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        limits = outlook.limits
-        if not limits.is_timed or _too_late(problem, j, float(limits.pair_end[i, j])) is None:
-            return None
-        free = limits.without(self.word, j)
-        (until,) = moments(problem, float(problem.model.ends_by[j]))
-        late = None if free is None else _too_late(problem, j, float(free.pair_end[i, j]))
-        return late or f"what it waits for is too late for its deadline, which is {until}"
+        return self._by_least_times(outlook.limits, i, j, bound=j, limit="deadline, which is")
+
+    def _excludes(self, limits: Limits, i: int, j: int) -> str | None:
+        return self.late(limits.problem, j, 0.0, float(limits.pair_end[i, j]))
 
     def latest(self, problem: Question, i: int, j: int) -> float:
         return float(problem.model.ends_by[j])
 
     def late(self, problem: Question, j: int, ready: float, end: float) -> str | None:
-        return _too_late(problem, j, end)
+        deadline = float(problem.model.ends_by[j])
+        if math.isinf(end) or end <= deadline * (1 + ROUNDING):
+            return None
+        ends, until = moments(problem, end, deadline)
+        return f"ends at {ends} at the earliest, its deadline is {until}"
 
     def broken_at(self, tried: Tried) -> str:
-        own = _too_late(tried.problem, tried.j, min(end for _, _, end in tried.stops))
+        own = self.late(tried.problem, tried.j, 0.0, min(end for _, _, end in tried.stops))
         return own or self._others_late(tried) or "at no place in its route are all deadlines kept"
 
     def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
         return replace(task, deadline_s=None) if task.id in begun else task
-
-
-def _too_late(problem: Question, j: int, end: float) -> str | None:
-    """That work on a task which ends at a time is too late; None: it is not."""
-    deadline = float(problem.model.ends_by[j])
-    if math.isinf(end) or end <= deadline * (1 + ROUNDING):
-        return None
-    ends, until = moments(problem, end, deadline)
-    return f"ends at {ends} at the earliest, its deadline is {until}"

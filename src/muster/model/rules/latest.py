@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-from muster.model.rules.rule import ROUNDING, Change, Found, Question, Rule, Tried, stop_of
+from muster.model.rules.rule import ROUNDING, Change, Found, Limits, Question, Rule, Tried, stop_of
+from muster.model.rules.times import moments
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,19 @@ class Latest(Rule):
     def unlimited(self, problem: Question, i: int, j: int) -> Later | None:
         limit = self.latest(problem, i, j)
         return self.lifts(limit, None) if math.isfinite(limit) else None
+
+    def _excludes(self, limits: Limits, i: int, j: int) -> str | None:
+        """That the limit is before what robot i and task j come to at the least; None: it is not."""
+        raise NotImplementedError
+
+    def _by_least_times(self, limits: Limits, i: int, j: int, *, bound: int, limit: str) -> str | None:
+        """The same, by times that hold whatever the rule says of whom it is `bound` to; `limit` is it in words."""
+        if not limits.is_timed or self._excludes(limits, i, j) is None:
+            return None
+        free = limits.without(self.word, bound)
+        late = None if free is None else self._excludes(free, i, j)
+        (until,) = moments(limits.problem, self.latest(limits.problem, i, j))
+        return late or f"what it waits for is too late for its {limit} {until}"
 
     def _others_late(self, tried: Tried) -> str | None:
         """Which other task would be too late, at the place where the task begins first."""

@@ -93,13 +93,13 @@ class Load(Rule):
         refused = self.refusal(problem, i, j)
         if refused is not None:
             return refused
-        other = problem.partners[j]
+        other = problem.model.partners[j]
         if other is None or outlook.limits.usable[i, other]:
             return None
         return f"it cannot do {problem.tasks[other].id}, which {_is_to(problem, j)}"
 
     def concerns(self, problem: Question, j: int) -> bool:
-        other = problem.partners[j]
+        other = problem.model.partners[j]
         return any(problem.tasks[k].load is not None for k in (j, other) if k is not None)
 
     def broken_at(self, tried: Tried) -> str:

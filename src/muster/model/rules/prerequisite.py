@@ -23,12 +23,6 @@ from muster.model.rules.rule import (
 )
 
 
-def _awaited_lags(problem: Question, j: int) -> list[tuple[float, float]]:
-    """For each task that must be done before task j, also the one whose goods it delivers, the least and most lag."""
-    known = {k: (after, within) for k, after, within in problem.model.gaps(j)}
-    return [known.get(k, (0.0, np.inf)) for k in problem.awaited[j]]
-
-
 class Prerequisite(Rule):
     """All prerequisites of a task are in the plan, and can be done before it."""
 
@@ -60,7 +54,7 @@ class Prerequisite(Rule):
         return f"{outlook.lost_before} comes before it and can never be done"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
-        missing = [plan.problem.tasks[k].id for k in plan.problem.prerequisites[j] if k not in plan.done]
+        missing = [plan.problem.tasks[k].id for k in plan.problem.model.stated[j] if k not in plan.done]
         if missing:
             return f"left out before it: {listed(missing)}"
         if plan.is_timed:

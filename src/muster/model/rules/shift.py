@@ -69,13 +69,10 @@ class Shift(Latest):
         return np.asarray(limits.pair_end + limits.home <= until * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        limits = outlook.limits
-        if not limits.is_timed or self.over_late(problem, i, _end(limits, i, j)) is None:
-            return None
-        free = limits.without(self.word, i)
-        (until,) = moments(problem, float(problem.model.over_by[i]))
-        late = None if free is None else self.over_late(problem, i, _end(free, i, j))
-        return late or f"what it waits for is too late for its shift, which ends at {until}"
+        return self._by_least_times(outlook.limits, i, j, bound=i, limit="shift, which ends at")
+
+    def _excludes(self, limits: Limits, i: int, j: int) -> str | None:
+        return self.over_late(limits.problem, i, float(limits.pair_end[i, j] + limits.home[i, j]))
 
     def latest(self, problem: Question, i: int, j: int) -> float:
         return float(problem.model.over_by[i])
@@ -95,8 +92,3 @@ class Shift(Latest):
         if robot.available_until_s is None:
             return robot
         return replace(robot, available_until_s=None if end_s is None else max(robot.available_until_s, end_s))
-
-
-def _end(limits: Limits, i: int, j: int) -> float:
-    """A time before which no route of robot i with task j ends."""
-    return float(limits.pair_end[i, j] + limits.home[i, j])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -59,7 +59,11 @@ class Window(Latest):
         if not limits.is_timed or math.isfinite(limits.pair_begin[i, j]):
             return None
         own = _closed(problem, j, "arrives at", float(limits.arrival[i, j]))
-        return own or _waits_too_long(limits, i, j) or _never_together(problem, j)
+        waits = self._by_least_times(limits, i, j, bound=j, limit=f"{_which(problem, j)}, which closes at")
+        return own or waits or _never_together(problem, j)
+
+    def _excludes(self, limits: Limits, i: int, j: int) -> str | None:
+        return _closed(limits.problem, j, *reaches(limits, i, j))
 
     def latest(self, problem: Question, i: int, j: int) -> float:
         windows = problem.model.openings[j]
@@ -92,23 +96,11 @@ def _closed(problem: Question, j: int, how: str, ready: float) -> str | None:
     if not windows or ready <= windows[-1][1]:
         return None
     at, closes = moments(problem, ready, windows[-1][1])
-    return f"{how} {at} at the earliest, its {_which(windows)} closes at {closes}"
+    return f"{how} {at} at the earliest, its {_which(problem, j)} closes at {closes}"
 
 
-def _waits_too_long(limits: Limits, i: int, j: int) -> str | None:
-    """That the last window of a task is closed when all is there that it waits for; None: it is not."""
-    problem = limits.problem
-    if _closed(problem, j, *reaches(limits, i, j)) is None:
-        return None
-    free = limits.without(Window.word, j)
-    late = None if free is None else _closed(problem, j, *reaches(free, i, j))
-    windows = problem.model.openings[j]
-    (closes,) = moments(problem, windows[-1][1])
-    return late or f"what it waits for is too late for its {_which(windows)}, which closes at {closes}"
-
-
-def _which(windows: Sequence[tuple[float, float]]) -> str:
-    return "window" if len(windows) == 1 else "last window"
+def _which(problem: Question, j: int) -> str:
+    return "window" if len(problem.model.openings[j]) == 1 else "last window"
 
 
 def _never_together(problem: Question, j: int) -> str:
