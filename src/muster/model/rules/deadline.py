@@ -61,8 +61,8 @@ class Deadline(Latest):
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         return self._by_least_times(outlook.limits, i, j, bound=j, limit="deadline, which is")
 
-    def _excludes(self, limits: Limits, i: int, j: int) -> str | None:
-        return self.late(limits.problem, j, 0.0, float(limits.pair_end[i, j]))
+    def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
+        return self.late(problem, j, 0.0, float(limits.pair_end[i, j]))
 
     def latest(self, problem: Question, i: int, j: int) -> float:
         return float(problem.model.ends_by[j])

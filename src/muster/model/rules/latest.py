@@ -53,17 +53,18 @@ class Latest(Rule):
         limit = self.latest(problem, i, j)
         return self.lifts(limit, None) if math.isfinite(limit) else None
 
-    def _excludes(self, limits: Limits, i: int, j: int) -> str | None:
+    def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
         """That the limit is before what robot i and task j come to at the least; None: it is not."""
         raise NotImplementedError
 
     def _by_least_times(self, limits: Limits, i: int, j: int, *, bound: int, limit: str) -> str | None:
         """The same, by times that hold whatever the rule says of whom it is `bound` to; `limit` is it in words."""
-        if not limits.is_timed or self._excludes(limits, i, j) is None:
+        problem = limits.problem  # not that of what is free, which has no such limit
+        if not limits.is_timed or self._excludes(problem, limits, i, j) is None:
             return None
         free = limits.without(self.word, bound)
-        late = None if free is None else self._excludes(free, i, j)
-        (until,) = moments(limits.problem, self.latest(limits.problem, i, j))
+        late = None if free is None else self._excludes(problem, free, i, j)
+        (until,) = moments(problem, self.latest(problem, i, j))
         return late or f"what it waits for is too late for its {limit} {until}"
 
     def _others_late(self, tried: Tried) -> str | None:

@@ -71,8 +71,8 @@ class Shift(Latest):
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         return self._by_least_times(outlook.limits, i, j, bound=i, limit="shift, which ends at")
 
-    def _excludes(self, limits: Limits, i: int, j: int) -> str | None:
-        return self.over_late(limits.problem, i, float(limits.pair_end[i, j] + limits.home[i, j]))
+    def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
+        return self.over_late(problem, i, float(limits.pair_end[i, j] + limits.home[i, j]))
 
     def latest(self, problem: Question, i: int, j: int) -> float:
         return float(problem.model.over_by[i])

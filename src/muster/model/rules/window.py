@@ -62,8 +62,8 @@ class Window(Latest):
         waits = self._by_least_times(limits, i, j, bound=j, limit=f"{_which(problem, j)}, which closes at")
         return own or waits or _never_together(problem, j)
 
-    def _excludes(self, limits: Limits, i: int, j: int) -> str | None:
-        return _closed(limits.problem, j, *reaches(limits, i, j))
+    def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
+        return _closed(problem, j, *reaches(limits, i, j))
 
     def latest(self, problem: Question, i: int, j: int) -> float:
         windows = problem.model.openings[j]
