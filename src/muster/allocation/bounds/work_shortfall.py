@@ -90,7 +90,7 @@ class Shortfall:
         return cls(**{**named, "robots": tuple(named["robots"]), "tasks": tuple(named["tasks"])})
 
     def _of(self) -> str:
-        return _RESOURCES[self.resource]
+        return _RESOURCES.get(self.resource, self.resource)
 
     def _who(self) -> str:
         if self.everyone:
