@@ -46,7 +46,7 @@ FAULTS = {
     "execution": Fault(
         "src/muster/execution/goods_ledger.py", "sums.get(name, 0.0) + amount", "sums.get(name, 0.0) - amount"
     ),
-    "simulation": Fault("src/muster/simulation/batteries.py", "self.level + amount)", "self.level - amount)"),
+    "simulation": Fault("src/muster/simulation/energy.py", "self.used(), self.drain)", "self.used(), -self.drain)"),
     "exchange": Fault(
         "src/muster_files/altitudes.py", "first + k * options.altitude_step", "first - k * options.altitude_step"
     ),

@@ -7,7 +7,7 @@ from muster import ParameterError
 from muster.allocation.auctions.auction_terms import BIDS, PLACEMENTS, WINNERS, Terms
 from muster.allocation.auctions.bids import BID_RULES, FIGURES, Standing, lack_penalty, weighted
 from muster.allocation.auctions.winners import WINNER_RULES
-from muster.model.charges import share_used
+from muster.model.measured_energy import share_used
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import muster
 from muster.allocation.auctions.auction import AUCTION, Parameters
 from muster.allocation.stop import Stop
 from muster.mission.model import Battery, Mission, Robot
-from muster.model.charges import Charge, Drains
+from muster.model.measured_energy import Drains, EnergyLeft
 from muster.model.problem import Problem
 from muster.running.simulation import Simulation
 
@@ -25,7 +25,7 @@ def two_equal(**given):
 
 
 def winner(charges, weight=1.0):
-    problem = replace(Problem.compile(two_equal()), charges=charges).ready()
+    problem = replace(Problem.compile(two_equal()), energy_left=charges).ready()
     plan = AUCTION.solve(problem, Stop(), seed=0, params=Parameters(battery_weight=weight), start=None)
     (robot,) = (route.robot for route in plan.routes if route.tasks)
     return robot
@@ -33,16 +33,16 @@ def winner(charges, weight=1.0):
 
 @pytest.mark.parametrize(("left", "expected"), [((0.3, 0.9), "b"), ((0.9, 0.3), "a"), ((0.5, 0.5), "a")])
 def test_of_two_equal_robots_the_emptier_loses(left, expected):
-    assert winner(tuple(Charge(left=share, capacity=100.0) for share in left)) == expected
+    assert winner(tuple(EnergyLeft(left=share, capacity=100.0) for share in left)) == expected
 
 
 def test_without_a_weight_or_without_measurement_charges_do_not_count():
-    assert winner((Charge(left=0.1, capacity=100.0), Charge(left=1.0, capacity=100.0)), weight=0.0) == "a"
+    assert winner((EnergyLeft(left=0.1, capacity=100.0), EnergyLeft(left=1.0, capacity=100.0)), weight=0.0) == "a"
     assert winner(()) == winner((None, None)) == "a"
 
 
 def test_shares_are_what_is_gone_and_what_the_route_adds():
-    charges = (Charge(left=0.6, used=10.0, capacity=50.0), None, Charge(left=0.25))
+    charges = (EnergyLeft(left=0.6, used=10.0, capacity=50.0), None, EnergyLeft(left=0.25))
     drains = Drains.of(charges, np.array([20.0, 40.0, np.inf]))
     usages = np.array([20.0, 10.0, 99.0])
     np.testing.assert_allclose(drains.shares(usages, slice(None)), [0.4 + 10 / 50, 10 / 40, 0.75])
@@ -50,9 +50,9 @@ def test_shares_are_what_is_gone_and_what_the_route_adds():
 
 
 def test_a_part_of_a_problem_has_the_charges_of_its_robots():
-    charges = (Charge(left=0.3), Charge(left=0.9))
-    part = replace(Problem.compile(two_equal()), charges=charges).part([1], [0])
-    assert part.charges == charges[1:]
+    charges = (EnergyLeft(left=0.3), EnergyLeft(left=0.9))
+    part = replace(Problem.compile(two_equal()), energy_left=charges).part([1], [0])
+    assert part.energy_left == charges[1:]
 
 
 def test_the_rest_of_a_mission_is_sold_by_measured_charges():

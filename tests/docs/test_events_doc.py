@@ -16,7 +16,7 @@ TEXT = (Path(__file__).parents[2] / "docs" / "events.md").read_text(encoding="ut
 PARTS = {
     "task_events": "Tasks",
     "robot_events": "Robots",
-    "station_events": "Stations and doors",
+    "station_events": "Energy, stations and doors",
     "run_events": "The run",
 }
 

@@ -104,7 +104,7 @@ def test_a_fleet_that_uses_more_than_planned_charges_for_that():
 
     done = carried_out(given, each=use_more, charged={"dock": 16.0}, r="t0 t1 t2 t3 t4 t5 dock far")
     assert learnt[0] == pytest.approx(1.25, abs=0.01)  # when the sixth task was done 1.3 was known of five
-    charged = done._executor.crew["r"].energy.charged
+    charged = done._executor.crew["r"].energy.added
     assert charged == pytest.approx(1.25 * 34 + 6 + 1.2 - 24, abs=0.5)  # 24 are left, 6 stay; 2 % more than needed
 
 
@@ -184,7 +184,7 @@ def test_a_robot_that_is_served_is_free_when_that_is_over_and_has_the_level_of_t
         simulation.advance(simulation.time_s + 0.5)
     simulation.advance(simulation.time_s + 5)
     (snapshot,) = simulation._executor._rest().crew
-    assert snapshot.level == pytest.approx(40)
+    assert snapshot.energy.level == pytest.approx(40)
     assert snapshot.free_s == pytest.approx(20, abs=0.5)
 
 

@@ -128,7 +128,7 @@ def test_a_deadline_passes_in_a_pause():
     while fleet.time_s < 40.0:
         live.hear(live.time_s + 0.2)
     live.resume()
-    used = dict(live.executor.account.used)
+    used = {name: row.usage_flown for name, row in live.executor.account.robots.items()}
     while not live.done:
         live.look()
         live.hear(live.time_s + 0.2)

@@ -286,7 +286,7 @@ def new_robot_state(
         mission.rules.usage == "time",
         last_heard_s=now,
         since_s=now,
-        energy=None if as_it_holds.battery is None else RobotEnergy(as_it_holds.battery),
+        energy=RobotEnergy.of(as_it_holds),
     )
 
 

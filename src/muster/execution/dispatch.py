@@ -277,7 +277,7 @@ class Dispatch:
             self.refuse(state, task, late, now)
             return
         may_begin = self._ledger.may_begin(task) and not self._beginning.must_ask(task)
-        state.charged_idle = False
+        state.refilled_idle = False
         state.to_task, state.works = len(there), self._peers is None and may_begin
         state.at_home = False
         state.usage_to_task = state.used - state.used_before + self._planned_usage(state, task)
@@ -410,7 +410,7 @@ class Dispatch:
     def _end_for_all(self, task: str, team: Sequence[RobotState], now: float) -> None:
         robots = self._ledger.teams.get(task) or tuple(state.robot.id for state in team)
         for state in team:
-            state.charge_work()
+            state.end_work()
         usage = sum(state.usage_to_task for state in team), sum(state.used - state.used_before for state in team)
         parts = {state.robot.id: (state.usage_to_task, state.used) for state in team} if len(robots) > 1 else {}
         for state in team:

@@ -25,7 +25,7 @@ from muster.execution.replanning.remaining_problem import RemainingMission
 from muster.execution.replanning.situation import remaining_mission_of, required_routes, whole_plan
 from muster.execution.replanning.travel import Travel, travel_of
 from muster.execution.reports.report import Account
-from muster.execution.reports.work_figures import at_stations, back_s, planned_so_far, shifts_exceeded_s
+from muster.execution.reports.work_figures import back_s, planned_so_far, robot_row, shifts_exceeded_s
 from muster.execution.robots.monitor import Limits, moves_again
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.task_motion import MotionPlanner, Way, straight
@@ -46,7 +46,7 @@ from muster.mission.plan import Plan
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
-from muster.state import ExecutionEvent, MissionState, OtherEvent
+from muster.state import ExecutionEvent, MissionState, OtherEvent, words
 from muster.state.mission_state import AT_MOST_ONCE
 from muster.state.quantiles import Quantiles
 from muster.state.robot_events import RobotFails, RobotsFree, RobotSilent, RobotStuck
@@ -356,7 +356,7 @@ class Executor:
     def _look_at_energy(self) -> None:
         """Who is empty fails; who runs low is planned again."""
         for state in list(self._energy.empty()):
-            self._changes.exclude(state, RobotFails, self.now_s, "its battery is empty")
+            self._changes.exclude(state, RobotFails, self.now_s, words.EMPTY)
         self._energy.look(self.now_s)
 
     def _follow_script(self) -> None:
@@ -514,14 +514,11 @@ class Executor:
             objective_planned=self.planned.objective_value,
             ledger=self.ledger,
             lost=self.lost(),
-            used={name: state.used for name, state in self.crew.items()},
-            usage_planned=self.usage_planned,
+            robots={name: robot_row(state, self.usage_planned.get(name, 0.0)) for name, state in self.crew.items()},
             planned_so_far={name: planned_so_far(state) for name, state in self.crew.items()},
             mission_time_s=over_s - self.begun_s,
             reallocations=self.state.replanned,
             orders=self.orders.report(self.now_s - self.begun_s, self._script.not_taken_from_s, self.clock_lag),
-            charges={name: share for name, state in self.crew.items() if (share := state.share_left) is not None},
-            stations={name: one for name, state in self.crew.items() if (one := at_stations(state)) is not None},
             shifts_exceeded_s=shifts_exceeded_s(self._worked, self.now_s),
             traffic=self.traffic.with_waits(self.state.traffic),
             waits_s=self._punctuality.waits_s,

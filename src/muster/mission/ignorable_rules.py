@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from dataclasses import MISSING, fields, replace
+from typing import TYPE_CHECKING, TypeVar
 
 from muster.mission.errors import ParameterError
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
+
+if TYPE_CHECKING:
+    from muster.mission.robots import Robot
+    from muster.mission.tasks import Task
 
 IGNORABLE = (
     *("prerequisite", "suitability", "skill", "lock", "capacity"),
@@ -15,6 +21,18 @@ IGNORABLE = (
 _AS_THEY_ARE = ("suitability", "lock", "capacity", "battery", "min-tasks")
 _PLURALS = {f"{rule}s": rule for rule in IGNORABLE if rule not in _AS_THEY_ARE}
 """Words of earlier files and commands, read as before; and the like of the others."""
+_KEYS: Mapping[str, tuple[str, ...]] = {
+    "prerequisite": ("lags",),
+    "window": ("window_s",),
+    "deadline": ("deadline_s",),
+    "shift": ("available_until_s",),
+    "team": ("robots_needed", "team", "needs"),
+    "relation": ("same_robot_as", "other_robot_than", "starts_with"),
+    "load": ("load", "delivers", "load_capacity", "load_at_start"),
+    "battery": ("battery",),
+}
+"""By rule the keys of tasks and robots that are as by default where it does not hold."""
+T = TypeVar("T", "Task", "Robot")
 
 
 def ignorable_rule(word: object) -> str | None:
@@ -42,3 +60,10 @@ def ignored_rules(words: str | Collection[str]) -> tuple[str, ...]:
             )
         named.add(rule)
     return tuple(rule for rule in IGNORABLE if rule in named)
+
+
+def as_it_holds(item: T, ignored: Collection[str]) -> T:
+    """A task or robot without the rules that do not hold about times, teams, goods and energy."""
+    keys = {key for rule in ignored for key in _KEYS.get(rule, ())}
+    without = {f.name: {} if f.default is MISSING else f.default for f in fields(item) if f.name in keys}
+    return replace(item, **without) if without else item

@@ -89,8 +89,10 @@ def _meters(model: PlanModel) -> dict[str, Any]:
 
 
 def _station(station: Service) -> tuple[float, float, bool, bool, int]:
-    until_full_s = -1.0 if station.until_full_s is None else station.until_full_s
-    return station.rate, until_full_s, station.unloads, station.partial, station.slots
+    refill = station.refill
+    if refill is None or refill.rate is None:
+        return 0.0, -1.0 if refill is None else refill.whole_s, station.unloads, True, station.slots
+    return refill.rate, -1.0, station.unloads, refill.partial, station.slots
 
 
 def _profiles(profiles: Sequence[LegTimes]) -> dict[str, Any]:

@@ -12,7 +12,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from muster.mission.model import Station
 from muster.mission.values.arrays import Bools, Floats
+from muster.model.energy import Refill
 
 Openings = list[tuple[float, float]]
 """When something may begin: spans from, until, seconds, sorted and apart."""
@@ -68,28 +70,22 @@ class Service:
 
     Parameters
     ----------
-    rate
-        energy by second; 0: none little by little.
-    until_full_s
-        seconds after which there is as much as the robot has room for, whatever there was; None: never.
-    partial
-        whether a robot may go before it has so much.
+    refill
+        the energy that it adds; None: none.
     unloads
-        whether it puts down what no task delivers.
+        whether a robot puts down what no task delivers.
     slots
         how many robots at once.
     """
 
-    rate: float
-    until_full_s: float | None
-    partial: bool
+    refill: Refill | None
     unloads: bool
     slots: int
 
-    @property
-    def gives_energy(self) -> bool:
-        """Whether there is more energy afterwards."""
-        return self.rate > 0 or self.until_full_s is not None
+    @classmethod
+    def of(cls, station: Station) -> Service:
+        """Return the service of a station."""
+        return cls(Refill.of(station), station.unloads, station.slots)
 
 
 @dataclass(eq=False)

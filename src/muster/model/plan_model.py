@@ -88,7 +88,7 @@ class PlanModel:
     @property
     def refills(self) -> bool:
         """Whether robots get energy on the way."""
-        return any(station.gives_energy for station in self.stations)
+        return any(station.refill for station in self.stations)
 
     @cached_property
     def energy_at_start(self) -> Floats:

@@ -20,9 +20,9 @@ from muster.mission.plan import tie_order
 from muster.mission.supported_features import require_supported
 from muster.mission.system.garbage import collector_paused
 from muster.mission.value_types import shown
-from muster.model.charges import Charge, Drains
 from muster.model.core_arrays import core_arrays
 from muster.model.lengths import Measured
+from muster.model.measured_energy import Drains, EnergyLeft
 from muster.model.parts import Parts, Service
 from muster.model.plan_model import PlanModel
 from muster.model.rules import RULES, Rule
@@ -78,9 +78,9 @@ class Problem:
     tasks: tuple[Task, ...]
     fixed: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that its route begins with; empty: none at all
     known: Measured | None = None  # what the problem of which this is a part knew
-    charges: tuple[Charge | None, ...] = ()  # measured, for each robot; empty: none at all
+    energy_left: tuple[EnergyLeft | None, ...] = ()  # measured, for each robot; empty: none at all
     aboard: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that deliver what it has on board; empty: none
-    levels: tuple[float, ...] = ()  # what each battery holds at first, measured; inf: no battery; empty: as the mission
+    levels: tuple[float, ...] = ()  # the energy of each robot at first, measured; inf: without bounds; empty: as stated
     mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
     waiting: Waiting = NO_WAITING  # that is expected on ways
     freed: frozenset[tuple[str, int]] = frozenset()  # words of rules, and the robots or tasks that they do not bind
@@ -117,7 +117,6 @@ class Problem:
         own, work = tuple(self.robots[i] for i in robots), tuple(self.tasks[j] for j in tasks)
         number_in = {j: k for k, j in enumerate(tasks)}
         fixed = tuple(tuple(number_in[j] for j in self.fixed[i]) for i in robots) if self.fixed else ()
-        charges = tuple(self.charges[i] for i in robots) if self.charges else ()
         assert not self.freed, "a problem of which rules were freed is looked at as a whole"
         n, m = len(self.tasks), len(self.robots)
         stations = range(n + 2 * m, n + 2 * m + len(self.stations))
@@ -131,7 +130,7 @@ class Problem:
             robots=own,
             tasks=work,
             fixed=fixed,
-            charges=charges,
+            energy_left=tuple(self.energy_left[i] for i in robots) if self.energy_left else (),
             aboard=tuple(tuple(number_in[j] for j in self.aboard[i]) for i in robots) if self.aboard else (),
             levels=tuple(self.levels[i] for i in robots) if self.levels else (),
             known=known,
@@ -181,7 +180,7 @@ class Problem:
         for j, latest_s in enumerate(self.sooner):
             parts.ends(j, latest_s)
         due = np.array([math.inf if task.due_s is None else task.due_s for task in self.tasks])
-        return PlanModel(parts, due, tuple(map(_service, self.stations)))
+        return PlanModel(parts, due, tuple(map(Service.of, self.stations)))
 
     @property
     def capacity(self) -> Floats:
@@ -256,8 +255,8 @@ class Problem:
 
     @cached_property
     def drains(self) -> Drains:
-        """What routes use up of batteries, by measured charges where there are any."""
-        return Drains.of(self.charges, self.capacity)
+        """What routes use up of the energy of robots, as measured where it was."""
+        return Drains.of(self.energy_left, self.capacity)
 
     def may(self, i: int, j: int) -> bool:
         """Whether robot i may do task j: skills, suitability, locks, and what its action asks for."""
@@ -575,8 +574,3 @@ class Problem:
 
 def _floats(values: Iterable[float]) -> Floats:
     return np.array(list(values), dtype=np.float64)
-
-
-def _service(station: Station) -> Service:
-    until_full_s = station.swap_s if station.swaps else None
-    return Service(station.charge_per_s or 0.0, until_full_s, station.partial, station.unloads, station.slots)

@@ -112,6 +112,11 @@ class Telemetry:
     waits_for: str | None = None
     left_m: float | None = None
 
+    @property
+    def energy_left(self) -> float | None:
+        """The share of its energy that is left, which is the `charge` of its battery."""
+        return self.charge
+
 
 class RobotPort(Protocol):
     """The interface to one robot."""

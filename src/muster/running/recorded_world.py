@@ -28,15 +28,16 @@ def recorded_world(
     Raises
     ------
     ParameterError
-        for a law, wind, batteries or rotors that the world does not have. Worlds of other packages need not know of
-        them.
+        for a setting that the world does not take. Worlds of other packages need not know of all.
     """
+    from muster.simulation.declaration import SETTINGS
+
     name = request.world
     make = world_named(name)
     how = {field: getattr(request, field) for field in ("seed", "dt_s", "avoidance", "noise")}
     if recorder is not None:
         how |= {"observer": recorder.on_step, "observe_s": 0.1}
-    for field in _OF_SOME_WORLDS:
+    for field in [setting for setting in SETTINGS if setting != "snapshot"]:
         value = getattr(request, field)
         if value and value not in (PROFILE, CALM):
             _require_taken(make, name, field, value)
@@ -47,24 +48,13 @@ def recorded_world(
     return make(mission, **how)
 
 
-_OF_SOME_WORLDS = ("law", "wind", "batteries", "drain", "rotor_level")
-"""Fields of a request that only some worlds take."""
-_LACKS = {
-    "law": f"expected {PROFILE}: the world {{world}} has no other",
-    "wind": "expected none: the world {world} has no wind; {others} has",
-    "batteries": "expected none: the world {world} has no batteries",
-    "drain": "expected none: the world {world} has no batteries",
-    "rotor_level": "expected the world {others}: {world} has no rotors",
-    "snapshot": "expected none: the world {world} cannot be resumed",
-}
-"""What is said of a world that does not take a setting; `others` are those that do."""
-
-
 def _require_taken(make: MakeWorld, world: str, setting: str, value: Any) -> None:
     """Raise `ParameterError` unless a world takes a setting."""
+    from muster.simulation.declaration import SETTINGS
+
     if takes_setting(make, setting):
         return
-    lacks = _LACKS[setting]
+    lacks = SETTINGS[setting]
     others = worlds_that(lambda other: takes_setting(other, setting)) if "{others}" in lacks else ""
     expected = lacks.format(world=world, others=others)
     raise ParameterError(f"{setting}: {shown(plain(value))}; {expected}")

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 MakeWorld = Callable[..., "SimulatedWorld"]
 """Makes a world of a mission: `make(mission, seed=, dt_s=, avoidance=, noise=, observer=, observe_s=)`, with
-`law=` where it is not `profile`, and `wind=`, `batteries=`, `drain=`, `rotor_level=` where they are asked for. What it
-takes and can do it states by `muster.simulation.declaration.declares`."""
+`law=` where it is not `profile`, and others of `muster.simulation.declaration.SETTINGS` where they are asked for. What
+it takes and can do it states by `declares` there."""
 
 
 WORLDS: Registry[MakeWorld] = Registry(

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from muster.mission.system.plugins import declaring, require_words
+from muster.motion.laws import PROFILE
+from muster.simulation.energy import LACKS_ENERGY
 
 if TYPE_CHECKING:
     from muster.mission.model import Mission
@@ -16,8 +18,14 @@ if TYPE_CHECKING:
 EXACT, BODIES = ABILITIES = ("exact", "bodies")
 """What a world may be able to do: move robots exactly as commanded where there is no noise; show their bodies in films
 and stills."""
-SETTINGS = ("law", "wind", "batteries", "drain", "rotor_level", "snapshot")
-"""Keyword arguments that a world may take beside those of all worlds."""
+SETTINGS: Mapping[str, str] = {
+    "law": f"expected {PROFILE}: the world {{world}} has no other",
+    "wind": "expected none: the world {world} has no wind; {others} has",
+    **LACKS_ENERGY,
+    "rotor_level": "expected the world {others}: {world} has no rotors",
+    "snapshot": "expected none: the world {world} cannot be resumed",
+}
+"""Keyword arguments that worlds may take beside those of all, and what is said of one that does not, if `others` do."""
 
 M = TypeVar("M", bound=Callable[..., object])
 

@@ -12,11 +12,12 @@ from muster.motion.map_world import body_of
 from muster.perception.laser import NO_DISCS, Scanner, faces_at
 from muster.simulation.cameras import GeometricCameras
 from muster.simulation.declaration import EXACT, declares
+from muster.simulation.energy import LACKS_ENERGY
 from muster.simulation.lasers import discs_seen_at, laser_height_m
 from muster.simulation.world_base import Event, WorldBase
 
 
-@declares(settings=("law", "batteries", "drain", "snapshot"), abilities=(EXACT,))
+@declares(settings=("law", *LACKS_ENERGY, "snapshot"), abilities=(EXACT,))
 class KinematicWorld(WorldBase):
     """Robots that follow their velocity commands exactly, but for noise; see `WorldBase`."""
 

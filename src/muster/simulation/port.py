@@ -16,7 +16,7 @@ from muster.motion.noise import Noise
 from muster.motion.order_trajectory import STEP_S, TrajectoryMaker
 from muster.motion.port import Inertial, Telemetry, Waypoint
 from muster.perception.dead_reckoning import Odometry
-from muster.simulation.batteries import Battery
+from muster.simulation.energy import SimulatedEnergy
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class SimulatedPort:
         self.body = robot
         self._name_of = name_of
         self._trajectories = trajectories
-        self.battery: Battery | None = None
+        self.energy: SimulatedEnergy | None = None
         self._held_before_s = self._stayed_before = 0.0
         self._axes = np.array([1.0, 1.0, float(len(robot.position) == 3)])
         self._number = number
@@ -170,8 +170,8 @@ class SimulatedPort:
         return self._said[1]
 
     def _report(self) -> Telemetry:
-        charge = None if self.battery is None else self.battery.charge
-        said = Telemetry(*self._crowd.report(self._number), self._felt(), charge, waits_for=self._held_up_by)
+        share = None if self.energy is None else self.energy.look().share
+        said = Telemetry(*self._crowd.report(self._number), self._felt(), share, waits_for=self._held_up_by)
         return self._disturbed(said) if self._noise.of_telemetry else said
 
     @property

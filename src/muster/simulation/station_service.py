@@ -7,17 +7,18 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from muster.mission.model import Station
+from muster.model.energy import Refill
 from muster.simulation.port import Serving, SimulatedPort
 
 NEAR_M = 0.5
 """Metres between the bodies of a robot and of one at the station, or the station itself, at which it is served."""
 LOOK_S = 0.5
-"""Seconds between two looks at batteries."""
+"""Seconds between two looks at the energy of robots."""
 
 
 @dataclass
 class WorldStations:
-    """What stations do to batteries, as time goes on.
+    """What stations add to the energy of robots, as time goes on.
 
     Parameters
     ----------
@@ -34,8 +35,8 @@ class WorldStations:
 
     def serve(self, port: SimulatedPort, before: Serving | None, seconds: float, largest_m: float) -> None:
         """Some time has gone by, in which a robot was served as it was said before; `largest_m`: the largest radius."""
-        battery = port.battery
-        if before is None or battery is None or before.station not in self.stations:
+        energy = port.energy
+        if before is None or energy is None or before.station not in self.stations:
             return
         station = self.stations[before.station]
         if not _is_near(port, station, largest_m):
@@ -44,10 +45,9 @@ class WorldStations:
         given_s = self._given_s.get(key, 0.0)
         over = port.serving != before
         until_s = before.hold_s if over and port.has_passed(before) else min(before.hold_s, given_s + seconds)
-        if station.charge_per_s is not None:
-            battery.add((until_s - given_s) * station.charge_per_s)
-        elif station.swaps and over and port.has_passed(before):
-            battery.fill()
+        refill = Refill.of(station)
+        if refill is not None:
+            energy.add(refill.added(until_s - given_s, ends=over and port.has_passed(before)))
         self._given_s = {} if over else {**self._given_s, key: until_s}
 
 

@@ -20,6 +20,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.mission_parts import positions
 from muster.mission.model import Mission, Robot
 from muster.mission.texts.near_matches import did_you_mean
+from muster.model.energy import Energy
 from muster.motion.avoidance_names import AUTO, method_for
 from muster.motion.frames import rotation
 from muster.motion.grid import Floats
@@ -31,18 +32,7 @@ from muster.motion.noise import NO_NOISE, Noise
 from muster.motion.order_trajectory import TrajectoryMaker
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.perception.laser import NO_DISCS, Scanner
-from muster.simulation.batteries import (
-    NO_CHARGES,
-    NO_DRAINS,
-    Battery,
-    Charges,
-    Drains,
-    capacity_in_usage,
-    charge_at_start,
-    drain_of,
-    require_charges,
-    require_drains,
-)
+from muster.simulation.energy import NONE, ByRobot, SimulatedEnergy, capacity_in_usage, of_robot, require_by_robot
 from muster.simulation.port import Serving, SimulatedPort
 from muster.simulation.station_service import LOOK_S, WorldStations
 from muster.simulation.walls import Slab, faces_and_slabs
@@ -134,8 +124,8 @@ class WorldBase(SimulatedWorld, ABC):
         law: str = "profile",
         horizon_s: float = 2.0,
         arrival_m: float = 0.02,
-        batteries: Charges = NO_CHARGES,
-        drain: Drains = NO_DRAINS,
+        batteries: ByRobot = NONE,
+        drain: ByRobot = NONE,
         observer: Observer | None = None,
         observe_s: float = 0.0,
         snapshot: Mapping[str, Any] | None = None,
@@ -172,8 +162,8 @@ class WorldBase(SimulatedWorld, ABC):
         if snapshot is not None:
             batteries = {**batteries, **snapshot["charges"]}
             self._crowd.resume(math.ceil(snapshot["time_s"] / dt_s - 1e-6), [])
-        require_charges(batteries, [robot.id for robot in mission.all_robots])
-        require_drains(drain, [robot.id for robot in mission.all_robots])
+        for what, given in (("battery", batteries), ("drain", drain)):
+            require_by_robot(what, given, [robot.id for robot in mission.all_robots])
         self._batteries, self._drain = batteries, drain
         self._stations = WorldStations.of(mission.stations)
         self._moving_s: dict[str, float] = {}  # of robots with a battery of the mission
@@ -252,19 +242,20 @@ class WorldBase(SimulatedWorld, ABC):
         trajectories = self._trajectories_of(robot)
         port = SimulatedPort(robot, number, self._crowd, self._noise, self._seed, trajectories, self._name_of)
         self._ports[robot.id] = port
-        at_start = charge_at_start(self._batteries, robot)
+        at_start = of_robot(self._batteries, robot.id, None if robot.battery is None else robot.battery.at_start)
         if at_start is not None:
             self._put_in(port, robot, at_start)
         return port
 
     def _put_in(self, port: SimulatedPort, robot: Robot, at_start: float) -> None:
         """Give a robot its battery: of the mission, drained by usage; else as the world has it."""
-        drain = drain_of(self._drain, robot.id)
-        if robot.battery is None:
-            port.battery = Battery(1.0, at_start, self._drained_by(robot, self._number(robot.id)), drain)
+        energy, drain = Energy.of(robot), of_robot(self._drain, robot.id, 1.0)
+        if energy is None:
+            capacity, used = 1.0, self._drained_by(robot, self._number(robot.id))
         else:
             self._moving_s[robot.id] = 0.0
-            port.battery = Battery(robot.battery.capacity, at_start, self._usage_of(robot), drain)
+            capacity, used = energy.capacity, self._usage_of(robot)
+        port.energy = SimulatedEnergy(capacity, at_start * capacity, used, drain, counted=0.0)
 
     def snapshot(self) -> dict[str, Any]:
         """Return plain data from which a world is made whose bodies stand, move and are charged as they do here.
@@ -273,12 +264,12 @@ class WorldBase(SimulatedWorld, ABC):
         station has given to a robot that it serves.
         """
         poses, motions = np.column_stack([self.positions, self.headings]), self._crowd.motions()
-        batteries = {name: port.battery for name, port in self._ports.items()}
+        energies = {name: port.energy for name, port in self._ports.items()}
         return {
             "time_s": self.time_s,
             "robots": dict(zip(self._numbers, np.hstack([poses, motions]).tolist(), strict=True)),
             "distances_m": dict(self.distances_m),
-            "charges": {name: battery.charge for name, battery in batteries.items() if battery is not None},
+            "charges": {name: energy.look().share for name, energy in energies.items() if energy is not None},
             "failed": sorted(self._failed),
             "muted": [name for name, port in self._ports.items() if port.muted],
             "least_m": self.min_distance_m,
@@ -303,10 +294,10 @@ class WorldBase(SimulatedWorld, ABC):
         self._crowd.recover(self._number(robot))
         self._failed.discard(robot)
         self._ports[robot].unmute()
-        battery = self._ports[robot].battery
-        if robot in self._empty and battery is not None:
+        energy = self._ports[robot].energy
+        if robot in self._empty and energy is not None:
             self._empty.discard(robot)
-            battery.fill()
+            energy.add(math.inf)
 
     def silence(self, robot: str) -> None:
         self._number(robot)
@@ -450,7 +441,7 @@ class WorldBase(SimulatedWorld, ABC):
             return _NOTHING
         return np.column_stack([self._crowd.travelled(), self._crowd.headings()])
 
-    def _look_at_batteries(self, served: Mapping[str, Serving | None], moved: Floats, seconds: float) -> None:
+    def _look_at_energy(self, served: Mapping[str, Serving | None], moved: Floats, seconds: float) -> None:
         """Robots that move use energy, those that were served get some; who is empty stops for good."""
         largest_m = max(robot.radius_m for robot in self._robots)
         for robot in self._moving_s:
@@ -458,7 +449,7 @@ class WorldBase(SimulatedWorld, ABC):
             if np.abs(moved[self._number(robot)]).max() > _STILL:
                 self._moving_s[robot] += seconds
             self._stations.serve(port, served[robot], seconds, largest_m)
-            if port.battery is not None and port.battery.level <= 0.0 and robot not in self._empty:
+            if port.energy is not None and port.energy.look().level <= 0.0 and robot not in self._empty:
                 self._empty.add(robot)
                 self._crowd.fail(self._number(robot))
 
@@ -494,7 +485,7 @@ class WorldBase(SimulatedWorld, ABC):
         for time, number, order, count, idle in self._go_on(until_s):
             label = self._ports[ids[number]].label(order, count)
             passed.append(WaypointPassed(time, ids[number], order, count, label, idle))
-        self._look_at_batteries(served, self._moved() - before, self.time_s - begin_s)
+        self._look_at_energy(served, self._moved() - before, self.time_s - begin_s)
         if self._crowd.steps % self._observed_steps == 0:
             self._observe()
         return tuple(passed)

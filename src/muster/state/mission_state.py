@@ -152,10 +152,10 @@ class MissionState:
 
     # What follows is for events alone.
 
-    def note_used(self, robot: str, used: float | None, charge: float | None = None) -> None:
-        """Note what a robot tells of its usage and its battery."""
+    def note_used(self, robot: str, used: float | None, share: float | None = None) -> None:
+        """Note what a robot tells of its usage and its energy."""
         if robot in self.robots:
-            self.robots[robot].note_used(used, charge)
+            self.robots[robot].note_used(used, share)
 
     def join(self, robot: Robot) -> None:
         """A robot takes part; what one did that joins again is known."""

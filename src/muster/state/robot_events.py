@@ -101,24 +101,6 @@ class RobotRunsLow(ExecutionEvent):
     capacity: float | None
 
 
-@happens("energy_low", words.energy_low)
-class EnergyLow(ExecutionEvent):
-    """A battery does not last for what lies ahead; `charge` is a share, `missing` in the mission's unit."""
-
-    robot: str
-    charge: float
-    missing: float
-    drain: float
-
-
-@happens("robot_charged", "{robot} is charged")
-class RobotCharged(ExecutionEvent):
-    """A robot that went to charge of itself is free for tasks."""
-
-    robot: str
-    station: str
-
-
 @happens("robot_sent_again", "{robot} is sent again")
 class RobotSentAgain(ExecutionEvent):
     """A robot without progress is sent once more."""

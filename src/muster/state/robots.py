@@ -48,12 +48,17 @@ class KnownRobot:
         """It begins elsewhere than the mission says: metres in the map frame, degrees."""
         self.robot = replace(self.robot, position=position, heading_deg=heading_deg)
 
-    def note_used(self, used: float | None, charge: float | None = None) -> None:
-        """Note its usage, and the share that its battery holds, where they are told."""
+    def note_used(self, used: float | None, share: float | None = None) -> None:
+        """Note its usage, and the share of its energy that it holds, where they are told."""
         if used is not None:
             self.used = used
-        if charge is not None:
-            self.charge = charge, self.used or 0.0
+        if share is not None:
+            self.charge = share, self.used or 0.0
+
+    @property
+    def energy_left(self) -> tuple[float, float] | None:
+        """The share of its energy that it held last, and its usage since; None: it has not told of it."""
+        return None if self.charge is None else (self.charge[0], (self.used or self.charge[1]) - self.charge[1])
 
     def end(self, task: str, planned: float) -> None:
         """It has done a task, or its part of it."""

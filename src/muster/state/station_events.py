@@ -1,10 +1,10 @@
-"""Events of stations and doors: calls at stations, which serve or do not, and ways that close and open."""
+"""Events of energy, stations and doors: robots that run low, calls at stations, ways that close and open."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
 from muster.state import words
 from muster.state.event import ExecutionEvent, happens
@@ -22,6 +22,11 @@ class AtStation(ExecutionEvent):
     station: str
     charge: float | None = None
     used: float | None = None
+
+    @classmethod
+    def of(cls, robot: str, station: str, share: float | None, used: float, **more: Any) -> Self:
+        """Return the event of a robot that holds a share of its energy, None: of none; and has used so much."""
+        return cls(robot=robot, station=station, charge=None if share is None else round(share, 6), used=used, **more)
 
     def change(self, state: MissionState) -> None:
         state.note_used(self.robot, self.used, self.charge)
@@ -65,6 +70,29 @@ class ServiceEnds(AtStation):
             robot.stops.append(self.station)
         if self.unloaded:
             state.goods.unload(self.robot, tied_goods(state.ledger))
+
+
+@happens("energy_low", words.energy_low)
+class EnergyLow(ExecutionEvent):
+    """A battery does not last for what lies ahead; `charge` is a share, `missing` in the mission's unit."""
+
+    robot: str
+    charge: float
+    missing: float
+    drain: float
+
+    @classmethod
+    def of(cls, robot: str, share: float, missing: float, drain: float) -> Self:
+        """Return the event of a robot that holds a share of its energy, which drains so fast."""
+        return cls(robot=robot, charge=round(share, 6), missing=round(missing, 6), drain=round(drain, 4))
+
+
+@happens("robot_charged", "{robot} is charged")
+class RobotRefilled(ExecutionEvent):
+    """A robot that went to charge of itself is free for tasks."""
+
+    robot: str
+    station: str
 
 
 @happens("station_fails", "station {station} fails", mark=words.ALARM)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from muster.mission.goods import as_amount
+from muster.mission.ignorable_rules import as_it_holds
 from muster.mission.model import Point, Robot, Task
 from muster.mission.task_relations import units_of
 from muster.state.reasons import cancelled_at, some_of
@@ -121,7 +122,7 @@ class Ledger:
 
         One that comes too late to begin with another can never begin. It is tied to none: no other waits for it.
         """
-        task = task_as_it_holds(task, self.ignored)
+        task = as_it_holds(task, self.ignored)
         if late := self.too_late_to_begin_with(task.starts_with):
             self.expired[task.id] = late
             task = replace(task, starts_with=())
@@ -131,7 +132,7 @@ class Ledger:
 
     def as_it_holds(self, robot: Robot) -> Robot:
         """A robot without what does not hold."""
-        return robot_as_it_holds(robot, self.ignored)
+        return as_it_holds(robot, self.ignored)
 
     def too_late_to_begin_with(self, tasks: Iterable[str]) -> str:
         """Why nothing can begin together with these tasks any more; empty if it still can."""
@@ -414,36 +415,6 @@ def _over(time_s: float, limit_s: float | None) -> float:
     """By how much a time is past a limit, more than by rounding."""
     over = 0.0 if limit_s is None else time_s - limit_s
     return over if over > TIME_ROUNDING_S else 0.0
-
-
-def task_as_it_holds(task: Task, ignored: Collection[str]) -> Task:
-    """A task without the rules about time and teams that do not hold."""
-    without: dict[str, Any] = {}
-    if "window" in ignored:
-        without |= {"window_s": ()}
-    if "deadline" in ignored:
-        without |= {"deadline_s": None}
-    if "team" in ignored:
-        without |= {"robots_needed": None, "team": (), "needs": None}
-    if "relation" in ignored:
-        without |= {"same_robot_as": (), "other_robot_than": (), "starts_with": ()}
-    if "prerequisite" in ignored:
-        without |= {"lags": {}}
-    if "load" in ignored:
-        without |= {"load": None, "delivers": None}
-    return replace(task, **without) if without else task
-
-
-def robot_as_it_holds(robot: Robot, ignored: Collection[str]) -> Robot:
-    """A robot without what does not hold: its shift, its battery, what it carries."""
-    without: dict[str, Any] = {}
-    if "shift" in ignored:
-        without |= {"available_until_s": None}
-    if "battery" in ignored:
-        without |= {"battery": None}
-    if "load" in ignored:
-        without |= {"load_capacity": None, "load_at_start": None}
-    return replace(robot, **without) if without else robot
 
 
 def moved(task: Task, to: Point) -> Task:

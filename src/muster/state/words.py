@@ -155,6 +155,10 @@ def final_states(data: Data) -> str:
     return f"at the end: {' | '.join(str(one.get('words')) for one in data.get('robots', ()))}"
 
 
+EMPTY = "its battery is empty"
+"""Why a robot takes no part any more that has no energy left."""
+
+
 def energy_low(data: Data) -> str:
     return _filled("{robot} has too little in its battery for what lies ahead", data) + _charge(data)
 

@@ -10,6 +10,7 @@ from typing import Any
 from muster.execution import Observer
 from muster.execution.replanning.reallocation import why_left_out
 from muster.execution.reports.report import Account
+from muster.execution.reports.robot_report import RobotReport
 from muster.mission.model import Event
 from muster.mission.plan import Plan, Unassigned, teams_of
 from muster.mission.yaml_writer import plain
@@ -165,8 +166,7 @@ class TeamLog:
             objective_planned=planned,
             ledger=self.state.ledger,
             lost=self.lost(),
-            used=self.used,
-            usage_planned=usages,
+            robots={name: RobotReport(name, usages.get(name, 0.0), used) for name, used in self.used.items()},
             mission_time_s=self._now_s,
             reallocations=len(self._plans) - 1,
             done_twice=self.state.done_twice,

@@ -71,8 +71,8 @@ class Watcher:
                 amount <= most.get(name, 0.0) + ROUNDING, f"{robot.id} has {amount:g} on board of {most.get(name):g}"
             )
         port = self.simulation.world.ports[robot.id]
-        if port.battery is not None:
-            self.report.check(port.battery.charge > EMPTY, f"{robot.id} is empty in the field")
+        if port.energy is not None:
+            self.report.check(port.energy.look().share > EMPTY, f"{robot.id} is empty in the field")
 
     def _balance(self):
         goods = self.executor.goods

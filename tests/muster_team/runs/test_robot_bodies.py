@@ -138,7 +138,7 @@ def test_a_robot_is_accounted_for_from_when_it_joins(tmp_path):
     events = [Event(at_s=at_s, robot_joins=Robot(id=robot, position=(0, 9))) for at_s, robot in ((0, "j"), (99, "k"))]
     robot_bodies, log = bodies_of(events, tmp_path)
     robot_bodies.step(1.0)
-    assert set(log.account.used) == {"a", "b", "j"}
+    assert set(log.account.robots) == {"a", "b", "j"}
 
 
 class OneFind:

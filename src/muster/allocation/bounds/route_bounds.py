@@ -200,12 +200,13 @@ class _Robot:
 
     def _served(self, label: _Label, station: Service) -> _Label | None:
         """A label at a station once the robot is served; None: it would put down more than it has."""
-        curve, since = label.curve, math.inf if self._drains and station.gives_energy else label.since
-        if self._drains and station.until_full_s is not None:
-            curve = [(curve[0][0] + station.until_full_s, self._full)]
-        elif self._drains and station.gives_energy:
-            fill = energy_curve.filled_partly if station.partial else energy_curve.filled_up
-            curve = fill(curve, station.rate, self._full)
+        refill = station.refill if self._drains else None
+        curve, since = label.curve, math.inf if refill is not None else label.since
+        if refill is not None and refill.rate is None:
+            curve = [(curve[0][0] + refill.whole_s, self._full)]
+        elif refill is not None and refill.rate is not None:
+            fill = energy_curve.filled_partly if refill.partial else energy_curve.filled_up
+            curve = fill(curve, refill.rate, self._full)
         put_down = label.put_down
         if station.unloads and self._goods:
             put_down = tuple(self._loads[c] - self._kept[c] for c in self._goods)

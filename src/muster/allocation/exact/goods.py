@@ -48,7 +48,7 @@ def most_seconds(problem: Problem) -> float:
         return 0.0
     n, stations = len(problem.tasks), problem.model.stations
     room = max(problem.model.energy[np.isfinite(problem.model.energy)], default=0.0)
-    served = sum((station.until_full_s or 0.0) + room / (station.rate or np.inf) for station in stations)
+    served = sum(station.refill.seconds(room) for station in stations if station.refill is not None)
     slowest = min(robot.speed_mps for robot in problem.robots)
     ways = most_detours(problem) / (1.0 if problem.in_time else min(1.0, slowest))
     return ways + 2.0 * (n + 1) * served

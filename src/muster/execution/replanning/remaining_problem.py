@@ -21,13 +21,13 @@ from muster.mission.goods import Amount, as_amount, by_commodity
 from muster.mission.model import Mission, Robot, Station, Task
 from muster.mission.plan import Plan, Route
 from muster.mission.task_relations import units_of
-from muster.model.charges import Charge
+from muster.model.energy_under_way import Held, with_held
+from muster.model.measured_energy import EnergyLeft
 from muster.model.problem import Problem
 from muster.motion.port import Place
 from muster.state.reasons import in_one_line
 
 SO_FAR = "so far"
-_MOST_RESERVE = 0.9  # share of the capacity that is left for the way to a station at most
 _ROUNDING = 1e-9  # relative; by how much a capacity is above what cannot be helped
 
 
@@ -47,12 +47,10 @@ class RobotSnapshot:
         usage until then, in the mission's unit.
     task
         the work under way; None: there is none.
-    charge
-        of its battery, as it last reported; None: it reports none.
-    level
-        what its battery holds then, in the unit of usage; None: it has none.
-    drain
-        how fast that drains, times the usage.
+    measured
+        what of its energy is left, as it last reported; None: it does not report that.
+    energy
+        what it holds then; None: usage does not empty it.
     load
         what it has on board then, by commodity.
     """
@@ -63,9 +61,8 @@ class RobotSnapshot:
     free_s: float
     used: float
     task: str | None
-    charge: Charge | None = None
-    level: float | None = None
-    drain: float = 1.0
+    measured: EnergyLeft | None = None
+    energy: Held | None = None
     load: Mapping[str, float] = field(default_factory=dict)
 
     @property
@@ -164,34 +161,21 @@ def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
     known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
     problem = _delayed(rest, replace(problem, known=known))
-    problem = _with_levels(rest, _bearable(problem, past))
-    problem = replace(problem, aboard=_aboard(rest, problem))
-    charges = {snapshot.robot.id: snapshot.charge for snapshot in rest.crew}
-    if any(charge is not None for charge in charges.values()):
-        problem = replace(problem, charges=tuple(charges[robot.id] for robot in problem.robots))
+    problem = _with_energy(rest, _bearable(problem, past))
+    measured = {snapshot.robot.id: snapshot.measured for snapshot in rest.crew}
+    energy_left = tuple(measured[robot.id] for robot in problem.robots)
+    problem = replace(problem, aboard=_aboard(rest, problem), energy_left=energy_left)
     routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
     return RemainingProblem(with_fixed_routes(_with_energy_to_end(problem, routes), Plan(routes=routes)), hopeless)
 
 
-def _with_levels(rest: RemainingMission, problem: Problem) -> Problem:
-    """With what batteries hold: before the past, which is yet to be taken off, and measured by how fast they drain."""
-    crew = {snapshot.robot.id: snapshot for snapshot in rest.crew}
-    if "battery" in rest.ignored or all(snapshot.level is None for snapshot in rest.crew):
+def _with_energy(rest: RemainingMission, problem: Problem) -> Problem:
+    """With what robots hold: before the past, which is yet to be taken off."""
+    energies = {snapshot.robot.id: snapshot.energy for snapshot in rest.crew}
+    if not any(energies.values()):
         return problem
-    robots, levels = [], []
-    for i, robot in enumerate(problem.robots):
-        now = crew[robot.id]
-        if robot.battery is None or now.level is None:
-            robots.append(robot)
-            levels.append(math.inf)
-            continue
-        least, capacity = robot.battery.least / now.drain, robot.battery.capacity / now.drain
-        if rest.on_duty:
-            least += _usage_to_station(problem, i)
-        battery = replace(robot.battery, capacity=capacity, reserve=min(least / capacity, _MOST_RESERVE))
-        robots.append(replace(robot, battery=battery))
-        levels.append(max(now.level / now.drain, battery.least) + (now.used if now.has_past else 0.0))
-    return replace(problem, robots=tuple(robots), levels=tuple(levels))
+    kept = [_usage_to_station(problem, i) if rest.on_duty else 0.0 for i in range(len(problem.robots))]
+    return with_held(problem, [energies[robot.id] for robot in problem.robots], kept)
 
 
 def _usage_to_station(problem: Problem, i: int) -> float:
@@ -219,7 +203,7 @@ def _with_energy_to_end(problem: Problem, past: Sequence[Route]) -> Problem:
     began = {route.robot: [problem.task_index[name] for name in route.tasks] for route in past}
     robots = list(problem.robots)
     for i, robot in enumerate(robots):
-        if robot.battery is None or robot.end_position is None or not began.get(robot.id):
+        if math.isinf(problem.levels[i]) or robot.end_position is None or not began.get(robot.id):
             continue
         if not admissible_alone(problem, i, began[robot.id]):
             robots[i] = replace(robot, end_position=None)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from muster.allocation.allocator import scheduled
 from muster.execution.robots.station_calls import Call, in_one_visit, tasks_and_calls
 from muster.mission.plan import RouteStop
+from muster.model.energy_under_way import refilled_to
 from muster.model.problem import Problem
 
 
@@ -60,29 +62,10 @@ def route_ahead(problem: Problem, i: int, stops: Sequence[RouteStop]) -> RouteAh
 def _calls(
     problem: Problem, i: int, stops: Sequence[RouteStop], after: Sequence[float], whole: float
 ) -> tuple[Call, ...]:
-    """The calls among stops, after each of which the robot uses so much, with the shares up to which it charges.
-
-    What is to be charged before the past is charged after it.
-    """
-    battery = problem.robots[i].battery
+    """The calls among stops, after each of which the robot uses so much, with the shares up to which it is filled."""
+    usages = [before - rest for before, rest in pairwise((whole, *after))]  # the work of a task included
+    shares = refilled_to(problem, i, stops, usages)
+    details = [(share, rest) for stop, share, rest in zip(stops, shares, after, strict=True) if stop.is_station]
     past = {problem.tasks[j].id for j in problem.beginning(i)}
-    level = 0.0 if battery is None else problem.levels[i] if problem.levels else battery.level_at_start
-    details: list[tuple[float | None, float]] = []
-    left = whole
-    stations = {station.id: station for station in problem.stations}
-    for stop, rest in zip(stops, after, strict=True):
-        at_stop = level - (left - rest)  # work of a task included
-        left, level = rest, at_stop
-        if not stop.is_station:
-            if battery is not None and stop.name in past:
-                details = [(until and level / battery.capacity, after_it) for until, after_it in details]
-            continue
-        until = None
-        if battery is not None and stop.charged is not None:
-            level = min(battery.capacity, at_stop + stop.charged)
-            until = level / battery.capacity
-        elif battery is not None and stations[stop.name].gives_energy:
-            level = battery.capacity
-        details.append((until, rest))
     names = [stop.name for stop in stops if stop.name not in past]
-    return in_one_visit(tasks_and_calls(names, stations, details)[1])
+    return in_one_visit(tasks_and_calls(names, {station.id for station in problem.stations}, details)[1])

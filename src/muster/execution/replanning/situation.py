@@ -13,18 +13,20 @@ from muster.execution.replanning.travel import Spot
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.station_calls import with_calls
 from muster.execution.stations.slots import AT_STATION, Stations
-from muster.execution.stations.station_service import level_after_service
+from muster.execution.stations.station_service import to_add
 from muster.mission.errors import ParameterError
+from muster.mission.ignorable_rules import as_it_holds
 from muster.mission.model import Mission, Robot
 from muster.mission.plan import Plan, Reason, Route, RouteStop, Unassigned
 from muster.mission.value_types import shown
-from muster.model.charges import Charge
+from muster.model.energy_under_way import Held
+from muster.model.measured_energy import EnergyLeft
 from muster.state.goods_ledger import GoodsLedger
-from muster.state.task_ledger import Ledger, task_as_it_holds
+from muster.state.task_ledger import Ledger
 
 
 def required_routes(mission: Mission, plan: Plan) -> dict[str, tuple[RouteStop, ...]]:
-    """The routes of a plan that the mission can have, with the stations on them, and what is charged there.
+    """The routes of a plan that the mission can have, with the stations on them, and what these add.
 
     Raises
     ------
@@ -32,7 +34,7 @@ def required_routes(mission: Mission, plan: Plan) -> dict[str, tuple[RouteStop, 
         for robots and tasks that there are not, or that stand twice.
     """
     robots = {robot.id for robot in mission.robots}
-    tasks = {task.id: task_as_it_holds(task, plan.ignored).is_for_team for task in mission.tasks}
+    tasks = {task.id: as_it_holds(task, plan.ignored).is_for_team for task in mission.tasks}
     seen: set[str] = set()
     stations = {station.id for station in mission.stations}
     routes: dict[str, tuple[RouteStop, ...]] = {}
@@ -114,34 +116,31 @@ def _snapshot(state: RobotState, now: float, stations: Stations, load: Mapping[s
         free_s=now + state.work_left_s(now) + state.service_left_s(now),
         used=state.used_after(now) if works else state.used,
         task=state.route[0] if works else None,
-        charge=_charge(state),
-        level=_level(state, now, stations),
-        drain=1.0 if state.energy is None else state.energy.drain,
+        measured=_measured(state),
+        energy=_held(state, now, stations),
         load=load,
     )
 
 
-def _level(state: RobotState, now: float, stations: Stations) -> float | None:
-    """What a battery holds when the work or service under way is over."""
-    energy = state.energy
+def _held(state: RobotState, now: float, stations: Stations) -> Held | None:
+    """What a robot holds when the work or service under way is over."""
+    energy, works = state.energy, state.activity is Activity.WORKING
     if energy is None:
         return None
-    if state.activity is Activity.SERVED:
-        return level_after_service(stations, state)
-    if state.activity is Activity.WORKING:
-        return energy.level - energy.drain * (state.used_after(now) - state.used)
-    return energy.level
+    used = state.used_after(now) if works else state.used
+    served = to_add(stations, state) if state.activity is Activity.SERVED else 0.0
+    return Held(energy.level + served - energy.drain * (used - state.used), energy.drain, used)
 
 
 def _with_capacity(robot: Robot, capacity: float | None) -> Robot:
     return robot if robot.work_capacity == capacity else replace(robot, work_capacity=capacity)
 
 
-def _charge(state: RobotState) -> Charge | None:
-    if state.charge is None:
+def _measured(state: RobotState) -> EnergyLeft | None:
+    if state.told_share is None:
         return None
-    most = state.robot.work_capacity if state.energy is None else state.energy.battery.capacity
-    return Charge(left=state.charge, used=state.used, capacity=math.inf if most is None else most)
+    most = state.robot.work_capacity if state.energy is None else state.energy.capacity
+    return EnergyLeft(left=state.told_share, used=state.used, capacity=math.inf if most is None else most)
 
 
 def whole_plan(

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
+from muster.execution.reports.robot_report import RobotReport
 from muster.mission.objectives import lateness, objective_values
 from muster.mission.tables import data_frame, html_line, html_table
 from muster.state.orders import OrdersReport
@@ -14,26 +15,6 @@ from muster.state.traffic_account import TrafficAccount
 
 if TYPE_CHECKING:
     from pandas import DataFrame
-
-
-@dataclass(frozen=True)
-class StationAccount:
-    """What one robot did at stations.
-
-    Parameters
-    ----------
-    least_charge
-        the least share of its battery that was left; None: it has none.
-    charged
-        what was added to it, in the unit of usage.
-    visits, waited_s
-        how often it was served, and for how long it waited for slots.
-    """
-
-    least_charge: float | None
-    charged: float
-    visits: int
-    waited_s: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,15 +27,12 @@ class Account:
         by name, and by the plan that the mission began with, None where that does not tell.
     ledger, lost
         of the tasks; why each task is lost that is.
-    used, usage_planned, planned_so_far
-        by robot, in the mission's unit: measured; by the plan that the mission began with, 0 of who joined; and of the
-        part of it that was carried out.
+    robots
+        by id what each used, and did at stations.
+    planned_so_far
+        by robot the usage, in the mission's unit, of the part of the plan that was carried out.
     mission_time_s, reallocations, done_twice
         as in `Report`.
-    charges
-        by robot the share of its battery that it last reported, of those that do.
-    stations
-        by robot with a battery, or that was at a station, what it did there.
     shifts_exceeded_s
         by robot how long it was under way after its shift, of those that were.
     back_s
@@ -71,38 +49,16 @@ class Account:
     objective_planned: float | None
     ledger: Ledger
     lost: Mapping[str, str]
-    used: Mapping[str, float]
-    usage_planned: Mapping[str, float]
+    robots: Mapping[str, RobotReport]
     mission_time_s: float
     reallocations: int
     planned_so_far: Mapping[str, float] = field(default_factory=dict)
     done_twice: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    charges: Mapping[str, float] = field(default_factory=dict)
-    stations: Mapping[str, StationAccount] = field(default_factory=dict)
     shifts_exceeded_s: Mapping[str, float] = field(default_factory=dict)
     back_s: tuple[float, ...] = ()
     traffic: TrafficAccount = field(default_factory=TrafficAccount)
     waits_s: Mapping[str, float] = field(default_factory=dict)
     orders: OrdersReport | None = None
-
-
-@dataclass(frozen=True)
-class RobotReport:
-    """Usage of one robot in the mission's unit: of the plan that it began with, and measured. 0 planned: it joined.
-
-    `charge` is the share of its battery that was left at last; None where it has none that reports. `least_charge` is
-    the least share, `charged` what was added at stations, in the mission's unit, `station_visits` how often it was
-    served there, and `slot_wait_s` for how long it waited for that; None and 0 of a robot that does not charge.
-    """
-
-    robot: str
-    usage_planned: float
-    usage_flown: float
-    charge: float | None = None
-    least_charge: float | None = None
-    charged: float = 0.0
-    station_visits: int = 0
-    slot_wait_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -317,7 +273,7 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         min_distance_m=min_distance_m,
         waiting_s=ledger.waiting_s + account.traffic.waiting_s + _slot_wait_s(account),
         reallocations=account.reallocations,
-        robots=tuple(_robot(account, robot, used) for robot, used in account.used.items()),
+        robots=tuple(account.robots.values()),
         starts_s={task: ledger.starts_s[task] for task in done},
         ends_s={task: ledger.ends_s[task] for task in done},
         objective=_objective(account),
@@ -332,16 +288,6 @@ def report_of(account: Account, *, contacts: int | None = None, min_distance_m: 
         done_twice=dict(account.done_twice),
         orders=account.orders,
         tasks_forgotten=_forgotten(ledger),
-    )
-
-
-def _robot(account: Account, robot: str, used: float) -> RobotReport:
-    row = RobotReport(robot, account.usage_planned.get(robot, 0.0), used, account.charges.get(robot))
-    at = account.stations.get(robot)
-    if at is None:
-        return row
-    return replace(
-        row, least_charge=at.least_charge, charged=at.charged, station_visits=at.visits, slot_wait_s=at.waited_s
     )
 
 
@@ -375,7 +321,7 @@ def _waiting_by_cause(account: Account) -> dict[str, float]:
 
 
 def _slot_wait_s(account: Account) -> float:
-    return sum(one.waited_s for one in account.stations.values())
+    return sum(row.slot_wait_s for row in account.robots.values())
 
 
 def _forgotten(ledger: Ledger) -> dict[str, int]:
@@ -390,7 +336,8 @@ def _objective(account: Account) -> ObjectiveReport:
     arrivals = [ledger.arrival_usage[task] for task in ledger.ends_s]
     late = lateness((ledger.tasks[task].priority, end, ledger.tasks[task].due_s) for task, end in ledger.ends_s.items())
     ends_s = [*ledger.ends_s.values(), sums.last_end_s, *account.back_s]
-    flown = objective_values(account.used.values(), arrivals, ends_s, late + sums.lateness)
+    usages = [row.usage_flown for row in account.robots.values()]
+    flown = objective_values(usages, arrivals, ends_s, late + sums.lateness)
     if sums.done:
         flown["average"] = (sum(arrivals) + sums.arrival_usage) / (len(arrivals) + sums.done)
     return ObjectiveReport(account.objective, account.objective_planned, flown[account.objective])

@@ -1,21 +1,19 @@
-"""Figures of what robots did: at stations, after their shifts, and when they were back."""
+"""Figures of what robots did: their rows of reports, work after their shifts, and when they were back."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from muster.execution.reports.report import StationAccount
+from muster.execution.reports.robot_report import RobotReport
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.state.task_ledger import TIME_ROUNDING_S
 
 
-def at_stations(state: RobotState) -> StationAccount | None:
-    """What a robot did at stations; None of one that has no battery and was at none."""
-    energy = state.energy
-    if energy is None and not state.visits:
-        return None
-    least, charged = (None, 0.0) if energy is None else (energy.least / energy.battery.capacity, energy.charged)
-    return StationAccount(least, charged, state.visits, state.slot_wait_s)
+def robot_row(state: RobotState, planned: float) -> RobotReport:
+    """What a robot used, beside what was planned for it, and did at stations."""
+    energy, left = state.energy, state.share_left
+    least, added = (None, 0.0) if energy is None else (energy.lowest / energy.capacity, energy.added)
+    return RobotReport(state.robot.id, planned, state.used, left, least, added, state.visits, state.slot_wait_s)
 
 
 def shifts_exceeded_s(worked: Iterable[RobotState], now: float) -> dict[str, float]:

@@ -56,7 +56,7 @@ class RobotState:
     calls
         at stations, on that route.
     energy
-        of its battery, if it has one.
+        what it holds; None: usage does not empty it.
     """
 
     robot: Robot
@@ -75,7 +75,7 @@ class RobotState:
     service_s: float = 0.0  # how long its service takes
     visits: int = 0  # so often it was served at a station
     slot_wait_s: float = 0.0  # for so long it waited for slots
-    charged_idle: bool = False  # whether it has gone to charge of itself, and has done no task since
+    refilled_idle: bool = False  # whether it has gone for energy of itself, and has done no task since
     out_at: Place | None = None  # where it was when it was out
     aside_until_s: float = -math.inf  # until when it stands aside for others in a jam
     activity: Activity = Activity.IDLE
@@ -90,7 +90,7 @@ class RobotState:
     wait_cause: str = ""  # of `beginning.Wait`, while it waits
     wait_words: str = ""
     work_s: float = 0.0  # how long the current work takes, delays included
-    charged: float = 0.0  # usage of works that ended, as far as it was not travelled
+    stayed: float = 0.0  # usage of works that ended, as far as it was not travelled
     used_before: float = 0.0  # usage at the end of the last task
     usage_to_task: float = 0.0  # from then to the end of the current task, as planned
     busy_s: float = 0.0
@@ -130,7 +130,7 @@ class RobotState:
         return next_call(self.route, self.calls)
 
     def leave_out(self, gone: Container[str]) -> None:
-        """Take tasks out of its route; what it was to charge before them it charges before the next."""
+        """Take tasks out of its route; the energy that it was to get before them it gets before the next."""
         self.route, self.calls = without_tasks(self.route, self.calls, gone)
 
     @property
@@ -175,16 +175,15 @@ class RobotState:
     def recall(self, used: float) -> None:
         """Set its usage before the first telemetry, in the mission's unit."""
         said = self.port.telemetry()
-        self.busy_s, self.charged = used, used - (said.odometry_m if said is not None else 0.0)
+        self.busy_s, self.stayed = used, used - (said.odometry_m if said is not None else 0.0)
         self.used_before = used
 
     def recall_known(self) -> None:
         """Take over what is known of the time before, of a robot that has taken part before."""
         if self.known.used is not None:
             self.recall(self.known.used)
-        if self.known.charge is not None and self.energy is not None:
-            share, then = self.known.charge
-            self.energy.recall(share, (self.known.used or then) - then)
+        if (left := self.known.energy_left) is not None and self.energy is not None:
+            self.energy.recall(*left)
         self.at_home = self.at_home and not self.done
         said = self.port.telemetry()
         if self.out and self.out != RobotFails.kind and said is not None:
@@ -235,9 +234,9 @@ class RobotState:
         self.begun_s = begun
 
     def stop(self, now: float) -> None:
-        """Let it stop where it is, available. Work that is broken off is charged as far as it went."""
+        """Let it stop where it is, available. Work that is broken off counts as far as it went."""
         if self.activity is Activity.WORKING and self.work_s > 0:
-            self.charged += self._stayed_cost * min(1.0, (now - self.begun_s) / self.work_s)
+            self.stayed += self._stayed_cost * min(1.0, (now - self.begun_s) / self.work_s)
         self._waypoints = ()
         self._order = self.port.cancel()
         self.work, self.away = None, False
@@ -299,30 +298,30 @@ class RobotState:
     @property
     def used(self) -> float:
         """Usage so far, in the mission's unit: by odometry and work done, or by time under way."""
-        return self.busy_s if self.in_time else self.charged + (self.telemetry.odometry_m if self.telemetry else 0.0)
+        return self.busy_s if self.in_time else self.stayed + (self.telemetry.odometry_m if self.telemetry else 0.0)
 
     def note_energy(self) -> None:
-        """Note what its battery holds now."""
+        """Note what it holds now."""
         if self.energy is not None and self.telemetry is not None:
-            self.energy.hear(self.charge, self.used, served=self.activity is Activity.SERVED)
+            self.energy.hear(self.told_share, self.used, served=self.activity is Activity.SERVED)
 
     @property
     def capacity(self) -> float | None:
-        """How much it can use in all, in the mission's unit: by its charge too, where the mission has no battery."""
+        """How much it can use in all, in the mission's unit: by its reports too, where the mission has no energy."""
         most = self.robot.work_capacity
-        if most is None or self.charge is None or self.energy is not None:
+        if most is None or self.told_share is None or self.energy is not None:
             return most
-        return min(most, self.used + self.charge * most)
+        return min(most, self.used + self.told_share * most)
 
     @property
-    def charge(self) -> float | None:
-        """The share of its battery that is left, as it last reported; None if it does not."""
-        return None if self.telemetry is None else self.telemetry.charge
+    def told_share(self) -> float | None:
+        """The share of its energy that is left, as it last reported; None if it does not."""
+        return None if self.telemetry is None else self.telemetry.energy_left
 
     @property
     def share_left(self) -> float | None:
-        """The share of its battery that is left, as the mission has it, else as it last reported; None: not known."""
-        return self.charge if self.energy is None else self.energy.share
+        """The share of its energy that is left, as the mission has it, else as it last reported; None: not known."""
+        return self.told_share if self.energy is None else self.energy.share
 
     def service_left_s(self, now: float) -> float:
         """Seconds until its service at a station ends."""
@@ -358,9 +357,9 @@ class RobotState:
         work_m = self.work.way_m if self.works and self.work is not None else 0.0
         return max(0.0, self.way_left_m - work_m)
 
-    def charge_work(self) -> None:
+    def end_work(self) -> None:
         """The current work has ended: its cost is used up, as far as it was not travelled."""
-        self.charged += self._stayed_cost
+        self.stayed += self._stayed_cost
         self.work = None
 
     @property

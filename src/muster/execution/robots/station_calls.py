@@ -1,4 +1,4 @@
-"""Calls of a route at stations: where a robot charges, swaps its battery or unloads between its tasks."""
+"""Calls of a route at stations: where a robot gets energy or unloads between its tasks."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ class Call:
     before
         the task of the route before which the robot goes there; None: after the last one.
     until
-        the share of its battery up to which the robot charges; None: until it is full, or nothing is charged.
+        the share of its capacity up to which the robot is filled; None: until it is full, or nothing is added.
     left
         what the robot uses after it, to the end of its route, in the mission's unit, as planned.
     planned
-        whether a plan has it; else the robot goes to charge of itself, as it has nothing to do or runs low.
+        whether a plan has it; else the robot goes for energy of itself, as it has nothing to do or runs low.
     """
 
     station: str

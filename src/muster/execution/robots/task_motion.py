@@ -29,7 +29,7 @@ class Work:
     waypoints
         what it passes from where it enters the task, holds included; passing the last is the end of the work.
     cost_m
-        usage of the work, by distance: what of it is not travelled is charged while the robot stays.
+        usage of the work, by distance: what of it is not travelled is used while the robot stays.
     driven_s
         seconds that the robot drives from the entry to the exit.
     """

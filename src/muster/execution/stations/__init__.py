@@ -1,1 +1,1 @@
-"""Energy and stations: low batteries, which station serves whom, and the queue for its slots."""
+"""Energy and stations: who runs low, which station serves whom, and the queue for its slots."""

@@ -1,4 +1,4 @@
-"""Watches the energy of robots: who runs low on the way, who is empty, and who goes to charge of itself."""
+"""Watches the energy of robots: who runs low on the way, who is empty, and who goes to a station of itself."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from muster.execution.robots.task_motion import along, path_length, place, trave
 from muster.execution.stations.slots import Stations
 from muster.mission.model import Station
 from muster.motion.port import Place
-from muster.state.robot_events import EnergyLow
+from muster.state.station_events import EnergyLow
 from muster.state.task_ledger import Ledger
 
 TOLERANCE = 0.01
@@ -26,7 +26,7 @@ _TELLING, _AS_PLANNED = 5, 1.02  # tasks that tell how much more is used than pl
 
 @dataclass
 class EnergyWatch:
-    """Looks at robots that have batteries.
+    """Looks at robots that usage empties.
 
     Parameters
     ----------
@@ -52,30 +52,24 @@ class EnergyWatch:
     _learnt_from: int = 0
 
     def empty(self) -> Iterator[RobotState]:
-        """Robots whose telemetry tells that their batteries are empty."""
+        """Robots whose telemetry tells that they are empty."""
         return (one for one in self.crew.values() if not one.out and one.energy is not None and one.energy.is_empty)
 
     def look(self, now: float) -> None:
-        """Robots whose energy does not last to their next charge, or the end of their route: they are planned anew."""
+        """Robots whose energy does not last to their next refill, or the end of their route: they are planned anew."""
         self._learn_detours()
         for state in self.crew.values():
-            if state.out or state.energy is None:
+            energy = state.energy
+            if state.out or energy is None:
                 continue
-            missing = self._missing(state, now)
-            if missing <= state.warned_short + TOLERANCE * state.energy.battery.capacity:
+            missing = self._missing(state, energy, now)
+            if missing <= state.warned_short + TOLERANCE * energy.capacity:
                 continue
             state.warned_short = missing
             if state.activity is Activity.RETURNING:
                 state.stop(now)
                 continue
-            self.ask(
-                EnergyLow(
-                    robot=state.robot.id,
-                    charge=round(state.energy.share, 6),
-                    missing=round(missing, 6),
-                    drain=round(state.energy.drain, 4),
-                )
-            )
+            self.ask(EnergyLow.of(state.robot.id, energy.share, missing, energy.drain))
 
     def _learn_detours(self) -> None:
         """Note how much more robots use than planned, be it for others in their way, or for turns."""
@@ -88,54 +82,50 @@ class EnergyWatch:
             if state.energy is not None:
                 state.energy.detours = flown / planned if flown > _AS_PLANNED * planned > 0 else 1.0
 
-    def _missing(self, state: RobotState, now: float) -> float:
-        """By how much a robot would come below its reserve before it charges next; below 0: it does not."""
-        energy = state.energy
-        assert energy is not None
+    def _missing(self, state: RobotState, energy: RobotEnergy, now: float) -> float:
+        """By how much a robot would come below its reserve before it is refilled next; below 0: it does not."""
         if state.activity is Activity.RETURNING:
             needed = state.travel_left_s if state.in_time else state.way_left_m
         elif state.activity in (Activity.DRIVING, Activity.WORKING) and state.route:
             after = self.ahead().get(state.robot.id, {}).get(state.route[0])
             if after is None:
                 return 0.0
-            call = self.stations.next_charge(state.calls)
+            call = self.stations.next_refill(state.calls)
             needed = state.used_after(now) - state.used + after - (0.0 if call is None else call.left)
         else:
             return 0.0
-        return needed * energy.drain - energy.above_reserve
+        return energy.missing_for(needed)
 
     def own_call(self, state: RobotState) -> Call | None:
-        """Where a robot goes to charge that has nothing to do, if it is to; None: it stays, or goes home.
+        """Where a robot goes for energy that has nothing to do, if it is to; None: it stays, or goes home.
 
         It goes once, until it has something to do again.
         """
         energy = state.energy
-        if energy is None or energy.share >= _FULL or state.charged_idle:
+        if energy is None or energy.share >= _FULL or state.refilled_idle:
             return None
-        short = self._is_short_of_home(state)
+        short = self._is_short_of_home(state, energy)
         if not (short or self.on_duty() or has_tasks_without_robot(self.ledger, self.crew)):
             return None
-        found = self._nearest(state)
+        found = self._nearest(state, energy)
         if found is not None and (short or self._is_low(energy, *found)):
             return Call(found[0].id, None, planned=False)
         return None
 
-    def _is_short_of_home(self, state: RobotState) -> bool:
+    def _is_short_of_home(self, state: RobotState, energy: RobotEnergy) -> bool:
         """Whether the energy of a robot that is to go home does not bring it there."""
         if state.home is None or state.at_home:
             return False
-        assert state.energy is not None
         home = self._usage(state, state.home)
-        return home is not None and state.energy.above_reserve < state.energy.drain * home
+        return home is not None and energy.missing_for(home) > 0
 
     def _is_low(self, energy: RobotEnergy, station: Station, to_station: float) -> bool:
-        """Whether a robot for which there may be work had better charge first."""
-        capacity = energy.battery.capacity
-        if energy.above_reserve < energy.drain * to_station + _LOW * capacity:
+        """Whether a robot for which there may be work had better be refilled first."""
+        if energy.missing_for(to_station) > -_LOW * energy.capacity:
             return True
-        order = self._mean_usage(capacity)
+        order = self._mean_usage(energy.capacity)
         free = self.stations.free_slots(station) > 0
-        return self.on_duty() and free and energy.above_reserve < energy.drain * (order + to_station)
+        return self.on_duty() and free and energy.missing_for(order + to_station) > 0
 
     def gets_home(self, state: RobotState) -> bool:
         """Whether the energy of a robot brings it to where its route ends, its reserve included."""
@@ -144,12 +134,10 @@ class EnergyWatch:
         home = self._usage(state, state.home)
         return home is None or state.energy.level >= state.energy.drain * home
 
-    def _nearest(self, state: RobotState) -> tuple[Station, float] | None:
+    def _nearest(self, state: RobotState, energy: RobotEnergy) -> tuple[Station, float] | None:
         """The station that gives energy to which a robot uses least, and that; None: it reaches none."""
-        energy = state.energy
-        assert energy is not None
         ways = [(self._usage(state, place(s.position)), s) for s in self.stations.working if s.gives_energy]
-        left = energy.level - TOLERANCE * energy.battery.capacity
+        left = energy.level - TOLERANCE * energy.capacity
         near = [(usage, s) for usage, s in ways if usage is not None and energy.drain * usage <= left]
         if not near:
             return None

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.station_calls import Call
 from muster.mission.model import Station
+from muster.model.energy import Refill
 from muster.state import MissionState
 
 AT_STATION = (Activity.TO_STATION, Activity.QUEUEING, Activity.SERVED)
@@ -78,16 +79,20 @@ class Stations:
         taken = sum(before(other) for other in self.at(state.station) if other is not state)
         return taken < self.known[state.station].slots
 
-    def next_charge(self, calls: Sequence[Call]) -> Call | None:
-        """The first of some calls at which energy is to be had."""
-        return next((call for call in calls if self.known[call.station].gives_energy), None)
+    def refill(self, station: str) -> Refill | None:
+        """The service of a station that adds energy; None: it adds none."""
+        return Refill.of(self.known[station])
 
-    def used_until_charge(self, state: RobotState) -> float:
-        """What a robot uses after its next call until it charges again, or its route ends, as planned."""
+    def next_refill(self, calls: Sequence[Call]) -> Call | None:
+        """The first of some calls at which energy is to be had."""
+        return next((call for call in calls if self.refill(call.station) is not None), None)
+
+    def used_until_refill(self, state: RobotState) -> float:
+        """What a robot uses after its next call until it is refilled again, or its route ends, as planned."""
         if not state.calls:
             return 0.0
         call, *later = state.calls
-        after = self.next_charge(later)
+        after = self.next_refill(later)
         return call.left - (0.0 if after is None else after.left)
 
     def free_slots(self, station: Station) -> int:

@@ -1,11 +1,10 @@
-"""Service at stations: robots go there, wait for a slot, and charge, swap their batteries or unload."""
+"""Service at stations: robots go there, wait for a slot, and get energy or unload."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypedDict
 
 from muster.execution.record import Tell
 from muster.execution.robots.robot_state import Activity, RobotState
@@ -15,10 +14,10 @@ from muster.execution.stations.energy_watch import has_tasks_without_robot
 from muster.execution.stations.slots import Stations
 from muster.motion.port import Place, Waypoint
 from muster.state.goods_ledger import GoodsLedger, tied_goods
-from muster.state.robot_events import RobotCharged
 from muster.state.station_events import (
     ArrivesAtStation,
     GoesToStation,
+    RobotRefilled,
     ServiceBegins,
     ServiceEnds,
     StationUnreachable,
@@ -26,11 +25,9 @@ from muster.state.station_events import (
 )
 from muster.state.task_ledger import Ledger
 
-CHARGE_MARGIN = 0.02
-"""Share of the capacity that a robot charges more than planned: no way is driven exactly as it was planned."""
 AT_SLOT_M = 0.3
 """Metres between two bodies at a station, or between the middle of one and the station, that count as being there."""
-_MISSING = 1e-3  # share of the capacity by which a charge may stay behind
+_MISSING = 1e-3  # share of the capacity by which what was added may stay behind
 
 
 @dataclass
@@ -98,7 +95,7 @@ class StationService:
             self.ask(StationUnreachable(station=state.station, robot=state.robot.id))
             return
         state.send(now, Activity.TO_STATION, along(way, state.station))
-        self.emit(GoesToStation(**_at(state)))
+        self.emit(GoesToStation.of(*_at(state)))
 
     def _say_wait(self, state: RobotState) -> None:
         served = [other.robot.id for other in self.stations.served(state.station)]
@@ -114,7 +111,7 @@ class StationService:
         else:
             state.send(now, Activity.QUEUEING, ())
         state.queued_s, state.sent_again = now, 0
-        self.emit(ArrivesAtStation(**_at(state)))
+        self.emit(ArrivesAtStation.of(*_at(state)))
 
     def _is_there(self, state: RobotState) -> bool:
         """Whether a robot is as near to a station as others that are there let it."""
@@ -142,7 +139,7 @@ class StationService:
             [Waypoint(there, hold_s=state.service_s, label=station.id, uses=0.0, service=station.id)],
         )
         takes_s = round(state.service_s, 6)
-        self.emit(ServiceBegins(**_at(state), services=tuple(station.services), takes_s=takes_s))
+        self.emit(ServiceBegins.of(*_at(state), services=tuple(station.services), takes_s=takes_s))
 
     def _end(self, state: RobotState, now: float) -> None:
         station = self.stations.known[state.station]
@@ -151,7 +148,7 @@ class StationService:
         if state.energy is not None and state.energy.told and self._goes_on(state, before, now):
             return
         if state.energy is not None and not state.energy.told:
-            state.energy.add(_to_add(self.stations, state))
+            state.energy.add(to_add(self.stations, state))
         gone = self.goods.loose(state.robot.id, tied_goods(self.ledger)) if station.unloads else {}
         call = state.call
         if call is not None:
@@ -159,14 +156,15 @@ class StationService:
         state.visits += 1
         state.warned_short = 0.0
         state.begin_activity(now, Activity.IDLE)
-        self.emit(ServiceEnds(**_at(state), unloaded=gone))
-        state.charged_idle = call is not None and not call.planned
-        if state.charged_idle and has_tasks_without_robot(self.ledger, self.stations.crew):
-            self.ask(RobotCharged(robot=state.robot.id, station=station.id))
+        self.emit(ServiceEnds.of(*_at(state), unloaded=gone))
+        state.refilled_idle = call is not None and not call.planned
+        if state.refilled_idle and has_tasks_without_robot(self.ledger, self.stations.crew):
+            self.ask(RobotRefilled(robot=state.robot.id, station=station.id))
 
     def extend(self, state: RobotState, now: float) -> None:
-        """Charge on, beyond what the service under way was to bring, as far as the robot's call says now."""
-        if state.energy is None or self.stations.known[state.station].charge_per_s is None:
+        """Let it be served on, beyond what the service under way was to bring, as far as the robot's call says now."""
+        refill = self.stations.refill(state.station)
+        if state.energy is None or refill is None or refill.rate is None:
             return
         state.note_energy()
         left_s = _takes_s(self.stations, state) - (0.0 if state.energy.told else now - state.begun_s)
@@ -181,50 +179,28 @@ class StationService:
 
     def _goes_on(self, state: RobotState, before: float, now: float) -> bool:
         """Go on where telemetry tells that less was added than was to be, as long as anything is."""
-        missing = _to_add(self.stations, state)
+        missing = to_add(self.stations, state)
         energy = state.energy
-        if energy is None or missing <= _MISSING * energy.battery.capacity or energy.level <= before:
+        if energy is None or missing <= _MISSING * energy.capacity or energy.level <= before:
             return False
         self._stay(state, _takes_s(self.stations, state), now)
         return True
 
 
-def level_after_service(stations: Stations, state: RobotState) -> float:
-    """What the battery of a robot holds when its service at its station is over; it must have one."""
-    energy = state.energy
-    assert energy is not None
-    return energy.level + _to_add(stations, state)
-
-
-def _to_add(stations: Stations, state: RobotState) -> float:
+def to_add(stations: Stations, state: RobotState) -> float:
     """What a robot is still to get at its station, in the unit of usage: as planned, and what it has learnt to need."""
-    energy, station = state.energy, stations.known[state.station]
-    if energy is None or not station.gives_energy:
+    energy, refill, call = state.energy, stations.refill(state.station), state.call
+    if energy is None or refill is None:
         return 0.0
-    call, capacity = state.call, energy.battery.capacity
-    until = capacity
-    if call is not None and call.until is not None and station.charges and station.partial:
-        needed = energy.battery.least + energy.drain * stations.used_until_charge(state)
-        until = min(capacity, max(call.until * capacity, needed) + CHARGE_MARGIN * capacity)
-    return max(0.0, until - energy.level)
+    return energy.to_add(refill, None if call is None else call.until, stations.used_until_refill(state))
 
 
 def _takes_s(stations: Stations, state: RobotState) -> float:
     """Seconds that the service of a robot takes."""
-    station = stations.known[state.station]
-    if station.charge_per_s is not None:
-        return _to_add(stations, state) / station.charge_per_s
-    return station.swap_s if station.swaps and state.energy is not None else 0.0
+    refill = stations.refill(state.station)
+    return 0.0 if refill is None or state.energy is None else refill.seconds(to_add(stations, state))
 
 
-class _At(TypedDict):
-    robot: str
-    station: str
-    charge: float | None
-    used: float
-
-
-def _at(state: RobotState) -> _At:
-    """What events of stations tell of a robot: the level of its battery is a share."""
-    charge = None if state.energy is None else round(state.energy.share, 6)
-    return {"robot": state.robot.id, "station": state.station, "charge": charge, "used": state.used}
+def _at(state: RobotState) -> tuple[str, str, float | None, float]:
+    """What events of stations tell of a robot: who is where, with what share of its energy, and its usage."""
+    return state.robot.id, state.station, None if state.energy is None else state.energy.share, state.used

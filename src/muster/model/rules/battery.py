@@ -9,6 +9,7 @@ from typing import ClassVar
 
 from muster.mission.model import Robot
 from muster.mission.stations import Battery as BatteryNow
+from muster.model.energy import Energy
 from muster.model.parts import Parts
 from muster.model.rules.rule import Bools, Change, Found, Limits, Outlook, Question, Rule, Tried, first_robot
 
@@ -58,9 +59,9 @@ class Battery(Rule):
 
     def compile(self, problem: Question, parts: Parts) -> None:
         for i, robot in enumerate(problem.robots):
-            if (battery := robot.battery) is not None:
-                level = problem.levels[i] if problem.levels else battery.level_at_start
-                parts.has_energy(i, battery.capacity - battery.least, max(0.0, level - battery.least))
+            if (energy := Energy.of(robot)) is not None:
+                level = problem.levels[i] if problem.levels else energy.at_start
+                parts.has_energy(i, energy.capacity - energy.least, max(0.0, level - energy.least))
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
         return problem.robots[i].battery if problem.holds(self.word) else None

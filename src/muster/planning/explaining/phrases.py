@@ -10,6 +10,7 @@ from muster.allocation.remedies.remedies import smallest
 from muster.allocation.remedies.remedy import Remedy
 from muster.mission.auction_book import Award, Book
 from muster.mission.goods import shown_amounts
+from muster.model.energy import levels_in_words
 from muster.model.problem import Problem
 from muster.planning.explaining.explanations import OneTask
 from muster.verification import Stop
@@ -28,7 +29,7 @@ def place(found: OneTask) -> list[str]:
     for stop in (stop for stop in route.stops if not stop.is_station and stop.name == found.task):
         waiting = f", waits {stop.waits_s:.2f} s," if stop.waits_s > 0 else ""
         said.append(f"{found.robot} arrives at {stop.arrives_s:.2f} s{waiting} and ends at {stop.ends_s:.2f} s")
-        said += _battery_and_load(found, stop)
+        said += _levels(found, stop)
     return said
 
 
@@ -37,13 +38,12 @@ def shortfall_lines(found: Shortfall) -> list[str]:
     return [f"proven: {found.detail}", f"  {found.least}"]
 
 
-def _battery_and_load(found: OneTask, stop: Stop) -> list[str]:
-    """What the battery holds, and what is on board, where the mission has such rules."""
+def _levels(found: OneTask, stop: Stop) -> list[str]:
+    """What the robot holds, and what is on board, where the mission has such rules."""
     mission, unit = found.problem.mission, found.problem.usage_unit
     said = []
     if stop.arrival_level is not None and stop.level_after is not None:
-        levels = f"{stop.arrival_level:.2f} {unit} when it arrives and {stop.level_after:.2f} {unit} when it leaves"
-        said.append(f"its battery holds {levels}")
+        said.append(levels_in_words(stop.arrival_level, stop.level_after, unit))
     if mission.has_goods:
         said.append(f"it leaves with a load of {shown_amounts(stop.load_after)}")
     return said

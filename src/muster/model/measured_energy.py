@@ -1,4 +1,4 @@
-"""Measured charges of batteries: what a robot's telemetry says, as far as plans of the rest of a mission need it."""
+"""The energy that robots have left as measured: what plans of the rest of a mission need of telemetry."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from muster.mission.values.arrays import Floats
 
 
 @dataclass(frozen=True, kw_only=True)
-class Charge:
-    """What was measured of a robot's battery.
+class EnergyLeft:
+    """What was measured of a robot's energy.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Charge:
     used
         the robot's usage when it was measured, in the mission's unit.
     capacity
-        the usage that a full battery allows; inf where the mission does not say.
+        the usage that a full robot has energy for; inf where the mission does not say.
     """
 
     left: float
@@ -32,19 +32,19 @@ class Charge:
 
 @dataclass(frozen=True)
 class Drains:
-    """Shares of batteries that routes use up: `spent`, and usage beyond `used` as a share of `capacity`; each (m,)."""
+    """Shares of energy that routes use up: `spent`, and usage beyond `used` as a share of `capacity`; each (m,)."""
 
     spent: Floats
     used: Floats
     capacity: Floats
 
     @classmethod
-    def of(cls, charges: Sequence[Charge | None], capacities: Floats) -> Drains:
-        """Of robots with these measured charges; where nothing was measured, of a full battery and these capacities."""
+    def of(cls, left: Sequence[EnergyLeft | None], capacities: Floats) -> Drains:
+        """Of robots that have so much left; where nothing was measured, of full robots and these capacities."""
         found = cls(np.zeros(len(capacities)), np.zeros(len(capacities)), capacities.copy())
-        for i, charge in enumerate(charges):
-            if charge is not None:
-                found.spent[i], found.used[i], found.capacity[i] = 1 - charge.left, charge.used, charge.capacity
+        for i, one in enumerate(left):
+            if one is not None:
+                found.spent[i], found.used[i], found.capacity[i] = 1 - one.left, one.used, one.capacity
         return found
 
     def shares(self, usages: Floats, robots: int | slice) -> Floats:
