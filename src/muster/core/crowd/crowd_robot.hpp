@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "crowd/braking.hpp"
-#include "random.hpp"
 #include "crowd/upright.hpp"
+#include "random.hpp"
 #include "vectors.hpp"
 
 namespace muster {
