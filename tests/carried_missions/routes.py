@@ -50,7 +50,8 @@ class RobotRoutes:
     def __init__(self, mission, robot):
         self.mission, self.robot, self.rules = mission, robot, mission.rules
         self.tasks = {task.id: task for task in mission.tasks}
-        self.stations = {station.id: station for station in mission.stations}
+        open_to = (one for one in mission.stations if one.only_robots is None or robot.id in one.only_robots)
+        self.stations = {station.id: station for station in open_to}
         goods = {name for task in mission.tasks for name in by_commodity(task.load)}
         self.goods = sorted(goods | set(by_commodity(robot.load_at_start)) if goods else ())
         battery = robot.battery

@@ -20,6 +20,7 @@ DIGESTS = {
     "windows": "2f59409dea65",
     "customers": "5cc21458027e",
     "transports": "b6422a7a4880",
+    "logistics": "b6feab1a17ec",
     "charging": "b24437bda241",
     "teams": "e795e748ee67",
     "coalitions": "abd9f5f04831",
@@ -39,6 +40,7 @@ SMALLEST = {
     "windows": {"robots": 1, "tasks": 1, "ordered": 0},
     "customers": {"kind": "RC2", "customers": 1},
     "transports": {"kind": "C1", "transports": 1},
+    "logistics": {"robots": 1, "tasks": 1},
     "charging": {"kind": "C2", "customers": 1, "stations": 0},
     "teams": {"robots": 1, "tasks": 1, "most": 1},
     "coalitions": {"species": 1, "robots_each": 2, "tasks": 1},
@@ -122,6 +124,13 @@ def test_parameters_do_what_they_say():
     assert max(len(task.prerequisites) for task in ordered.tasks) == 4
     (teams,) = muster.generate("teams", robots=4, tasks=100, most=3)
     assert {task.robots_needed for task in teams.tasks} == {1, 2, 3}
+    (logistics,) = muster.generate("logistics", tasks=401, robots=7, transports=0.5, teams=0.2, ordered=0.5, windows=1)
+    jobs = [task for task in logistics.tasks if task.delivers is None]
+    assert (len(logistics.tasks), len(logistics.robots)) == (401, 7)
+    assert 0.4 < (401 - len(jobs)) / len(jobs) < 0.6
+    assert 0.1 < sum(task.robots_needed == 2 for task in jobs) / len(jobs) < 0.3
+    assert 0.4 < sum(bool(task.prerequisites) for task in jobs) / len(jobs) < 0.6
+    assert all(bool(task.window_s) != bool(task.prerequisites) for task in jobs)
     (drones,) = muster.generate("drones", pads=2, highest_m=20)
     assert {len(task.position) for task in drones.tasks} == {3}
     assert all(10 <= task.position[2] <= 20 for task in drones.tasks)

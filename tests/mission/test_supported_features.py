@@ -5,7 +5,7 @@ import pytest
 import muster
 from muster.mission.errors import NotSupportedError
 from muster.mission.lanes import Lane, Lanes
-from muster.mission.model import Action, Mission, Robot, Rules, Task, TravelTable
+from muster.mission.model import Action, Event, Mission, Robot, Rules, Station, Task, TravelTable
 from muster.mission.plan import Plan
 from muster.mission.source import Source
 from muster.model.problem import Problem
@@ -86,3 +86,71 @@ def test_an_action_may_take_no_time(tmp_path):
         encoding="utf-8",
     )
     assert muster.load(file).tasks[0].action.duration_s == 0
+
+
+JUDGED = {
+    "robots[0].shifts_s": ("[[0.0, 5.0], [9.0, 20.0]]", {"shifts_s": ((0, 5), (9, 20))}, {}, {}),
+    "robots[0].longest_duty_s": ("30.0", {"longest_duty_s": 30}, {}, {}),
+}
+PLANNED = {
+    "tasks[1].longest_aboard_s": ("9.0", {}, {"delivers": "a", "longest_aboard_s": 9}, {}),
+    "tasks[1].either_or": ('["a"]', {}, {"either_or": "a"}, {}),
+    "stations[0].only_robots": ('["r"]', {}, {}, {"only_robots": ("r",)}),
+}
+
+
+def judged_alone(robot, task, station):
+    """A mission with a key of a rule that the judge knows, and planning does not know yet."""
+    return Mission(
+        robots=(Robot(id="r", position=(0, 0), **robot),),
+        tasks=(Task(id="a", position=(1, 0), load=1), Task(id="b", position=(2, 0), **task)),
+        stations=(Station(id="dock", position=(3, 0), services=("unload",), **station),),
+        source=Source("m.yaml", {(): ("m.yaml", 3)}),
+    )
+
+
+@pytest.mark.parametrize(("field", "value", "robot", "task", "station"), [(k, *v) for k, v in JUDGED.items()])
+def test_rules_that_only_the_judge_knows_are_refused_for_planning(field, value, robot, task, station):
+    mission = judged_alone(robot, task, station)
+    expected = "nothing here yet: planning does not know this rule"
+    for plans in (Problem.compile, muster.solve):
+        finding = refusal(plans, mission)
+        assert (finding.field, finding.value, finding.expected) == (field, value, expected)
+    assert verify(mission, Plan(routes=())).valid
+
+
+@pytest.mark.parametrize(("part", "of"), [("planning", JUDGED), ("carrying out", PLANNED)])
+def test_a_plan_is_not_carried_out_by_rules_that_runs_do_not_know(part, of):
+    for field, (_, *keys) in of.items():
+        finding = refusal(lambda mission: muster.simulate(mission, Plan(routes=())), judged_alone(*keys))
+        assert (finding.field, finding.expected) == (field, f"nothing here yet: {part} does not know this rule")
+
+
+@pytest.mark.parametrize(("robot", "task", "station"), [one[1:] for one in PLANNED.values()])
+def test_rules_that_planning_knows_are_planned(robot, task, station):
+    mission = judged_alone(robot, task, station)
+    assert verify(mission, muster.solve(mission, "search", iterations=20)).valid
+
+
+def test_robots_that_join_are_refused_too():
+    events = (
+        Event(at_s=1, robot_joins=Robot(id="s", position=(0, 0), longest_duty_s=5)),
+        Event(at_s=2, robot_joins=Robot(id="t", position=(0, 0), shifts_s=((0, 5), (9, 20)))),
+    )
+    mission = mission_of((Task(id="a", position=(0, 0)),), events=events)
+    with pytest.raises(NotSupportedError) as caught:
+        Problem.compile(mission)
+    assert [finding.field for finding in caught.value.findings] == [
+        "events[0].robot_joins.longest_duty_s",
+        "events[1].robot_joins.shifts_s",
+    ]
+
+
+@pytest.mark.parametrize(("robot", "task", "station"), [one[1:] for one in JUDGED.values()])
+def test_a_mission_with_such_a_rule_is_written_and_read(robot, task, station, tmp_path):
+    mission = judged_alone(robot, task, station)
+    mission.save(tmp_path / "m.yaml")
+    text = (tmp_path / "m.yaml").read_text()
+    assert "available" not in text
+    again = muster.load(tmp_path / "m.yaml")
+    assert (again.robots, again.tasks, again.stations) == (mission.robots, mission.tasks, mission.stations)

@@ -27,6 +27,8 @@ class Meaning:
         self.before = [self._numbers(task.prerequisites, "prerequisite") for task in self.tasks]
         self.same = [self._numbers(task.same_robot_as, "relation") for task in self.tasks]
         self.other = [self._numbers(task.other_robot_than, "relation") for task in self.tasks]
+        self.sets = self._joined("either_or", "either-or")
+        self.delivers = {j: self.number[task.delivers] for j, task in enumerate(self.tasks) if self._delivers(task)}
         self.allowed = [[self._may(robot, task) for task in self.tasks] for robot in self.robots]
         self._durations, self._teams = {}, {}
 
@@ -38,12 +40,19 @@ class Meaning:
 
     def _units(self):
         """The tasks in sets that begin together."""
+        return self._joined("starts_with", "relation")
+
+    def _joined(self, key, word):
+        """The tasks in sets of those that are tied by a key."""
         unit = {j: {j} for j in range(len(self.tasks))}
         for j, task in enumerate(self.tasks):
-            for k in self._numbers(task.starts_with, "relation"):
+            for k in self._numbers(getattr(task, key), word):
                 joined = unit[j] | unit[k]
                 unit |= dict.fromkeys(joined, joined)
         return [tuple(sorted(one)) for one in {frozenset(one) for one in unit.values()}]
+
+    def _delivers(self, task):
+        return task.delivers is not None and self._holds("load")
 
     # Who may do what.
 
@@ -100,17 +109,34 @@ class Meaning:
     def duration_s(self, j, members):
         return max(self.work_s(i, j) for i in members)
 
-    def next_begin(self, unit, at, durations):
+    def next_begin(self, unit, at, durations, teams):
         """When a unit can begin at the earliest, not before `at`; None: never."""
         while True:
             later = at
             for j in unit:
                 later = self._next_begin(j, later, durations[j])
+                for i in teams[j]:
+                    later = None if later is None else self._next_in_shift(i, later, durations[j])
                 if later is None:
                     return None
             if later <= at:
                 return at
             at = later
+
+    def _next_in_shift(self, i, at, seconds):
+        """The first moment, not before `at`, from which a shift of the robot lasts so long; None: never."""
+        shifts = self.robots[i].shifts_s
+        if not shifts or not self._holds("shift"):
+            return at
+        for begin, end in shifts:
+            if end is None or max(at, begin) + seconds <= end + ROUNDING:
+                return max(at, begin)
+        return None
+
+    def _moved(self, i, at, seconds):
+        """When the robot has gone a way for which it is free at a moment; None: never."""
+        leaves = self._next_in_shift(i, at, seconds)
+        return None if leaves is None else leaves + seconds
 
     def _next_begin(self, j, at, duration):
         task = self.tasks[j]
@@ -123,7 +149,7 @@ class Meaning:
                 return max(at, begin)
         return None
 
-    def schedule(self, routes):
+    def schedule(self, routes, *, way_home=True):
         """Begins and ends of the tasks done, each by number, in the earliest schedule; None: there is none."""
         teams = self.teams(routes)
         durations = {j: self.duration_s(j, members) for j, members in teams.items()}
@@ -132,19 +158,52 @@ class Meaning:
             return None
         steps += self._at_most(teams, durations)
         units = {u: [j for j in self.units[u] if j in teams] for u in least}
-        begins = {u: self.next_begin(units[u], at, durations) for u, at in least.items()}
-        windows = sum(len(self.tasks[j].window_s) for j in teams)
-        for _ in range((len(begins) + 2) * (windows + 1)):
+        begins = {u: self.next_begin(units[u], at, durations, teams) for u, at in least.items()}
+        leaves = [robot.available_from_s for robot in self.robots]
+        jumps = sum(len(self.tasks[j].window_s) for j in teams)
+        jumps += sum((len(route) + 1) * len(robot.shifts_s) for robot, route in zip(self.robots, routes, strict=True))
+        for _ in range((len(begins) + len(routes) + 2) * (jumps + 1)):
             if None in begins.values():
                 return None
-            late = [(b, begins[a] + after) for a, b, after in steps if begins[a] + after > begins[b] + ROUNDING]
-            if not late:
-                at = {j: begins[self.unit_of[j]] for j in teams}
-                return at, {j: at[j] + durations[j] for j in teams}
+            late = [(b, begins[a] + after) for a, b, after in steps]
+            late += self._arrivals(routes, begins, durations, leaves)
+            if any(earliest is None for _, earliest in late):
+                return None
+            late = [(b, earliest) for b, earliest in late if earliest > begins[b] + ROUNDING]
+            at = {j: begins[self.unit_of[j]] for j in teams}
+            ends = {j: at[j] + durations[j] for j in teams}
+            if not late and not self._leave_later(routes, ends, leaves, way_home=way_home):
+                return at, ends
             for b, earliest in late:
                 if begins[b] is not None:
-                    begins[b] = self.next_begin(units[b], max(begins[b], earliest), durations)
+                    begins[b] = self.next_begin(units[b], max(begins[b], earliest), durations, teams)
         return None
+
+    def _arrivals(self, routes, begins, durations, leaves):
+        """When units can begin by each of their robots, which keep to their shifts and leave when they do."""
+        for i, route in enumerate(routes):
+            free, here = leaves[i], None
+            for j in route:
+                yield self.unit_of[j], self._moved(i, free, self._travel.seconds(i, here, self.tasks[j]))
+                free, here = begins[self.unit_of[j]] + durations[j], self.tasks[j]
+
+    def _leave_later(self, routes, ends, leaves, *, way_home):
+        """Robots whose duty is too long leave later; whether any does."""
+        found = False
+        for i, (robot, route) in enumerate(zip(self.robots, routes, strict=True)):
+            if route and robot.longest_duty_s is not None and self._holds("duty"):
+                back = self.back(i, route, ends) if way_home else ends[route[-1]]
+                way = self._travel.seconds(i, None, self.tasks[route[0]])
+                leaves[i] = self._next_in_shift(i, leaves[i], way)
+                if back is not None and back - robot.longest_duty_s > leaves[i] + ROUNDING:
+                    leaves[i], found = back - robot.longest_duty_s, True
+        return found
+
+    def back(self, i, route, ends):
+        """When a robot's route, which has tasks, ends; None: never."""
+        if not self._travel.has_end(i):
+            return ends[route[-1]]
+        return self._moved(i, ends[route[-1]], self.way_home(i, route, "seconds"))
 
     @staticmethod
     def teams(routes):
@@ -184,6 +243,9 @@ class Meaning:
                 lag = self.tasks[j].lags.get(self.tasks[k].id)
                 if lag is not None and lag.within_s is not None and k in teams:
                     steps.append((self.unit_of[j], self.unit_of[k], -lag.within_s - durations[k]))
+            k, longest = self.delivers.get(j), self.tasks[j].longest_aboard_s
+            if longest is not None and k in teams and self._holds("aboard"):
+                steps.append((self.unit_of[j], self.unit_of[k], -longest - durations[k]))
         return steps
 
     @staticmethod
@@ -231,7 +293,7 @@ class Meaning:
                 arrival[j] = max(arrival.get(j, 0.0), usage)
         last = list(ends.values())
         if self.mission.rules.makespan_includes_return:
-            last += [ends[route[-1]] + self.way_home(i, route, "seconds") for i, route in enumerate(routes) if route]
+            last += [self.back(i, route, ends) for i, route in enumerate(routes) if route]
         late = {j: 0.0 if self.tasks[j].due_s is None else max(0.0, ends[j] - self.tasks[j].due_s) for j in ends}
         return {
             "total": sum(usages),
@@ -253,7 +315,9 @@ class Meaning:
     def faults(self, routes):
         """The rules that routes break, by the words of reasons; empty: they are admissible."""
         teams = self.teams(routes)
-        found = self._broken_before(routes, teams)
+        found = self._broken_before(routes, teams, way_home=True)
+        if any((j in teams) != (k in teams) for j, k in self.delivers.items()):
+            found.add("load")
         if any(not set(self.before[j]) <= teams.keys() for j in teams):
             found.add("prerequisite")
         if any(not set(self.units[self.unit_of[j]]) <= teams.keys() for j in teams):
@@ -266,23 +330,31 @@ class Meaning:
 
     def hopeless(self, routes):
         """Whether routes break a rule that they break as well with anything behind them."""
-        found = self._broken_before(routes, self.teams(routes))
+        found = self._broken_before(routes, self.teams(routes), way_home=False)
         return bool(found or self._too_long(routes, way_home=False))
 
-    def _broken_before(self, routes, teams):
+    def _broken_before(self, routes, teams, *, way_home):
         found = {"team" for j, members in teams.items() if not self.is_team(j, members)}
         for j in teams:
             if any(k in teams and set(teams[k]) != set(teams[j]) for k in self.same[j]):
                 found.add("relation")
             if any(k in teams and set(teams[k]) & set(teams[j]) for k in self.other[j]):
                 found.add("relation")
-        if not found and self.schedule(routes) is None:
+        if any(len(teams.keys() & set(names)) > 1 for names in self.sets):
+            found.add("either-or")
+        if any(not self._carries(route) for route in routes):
+            found.add("load")
+        if not found and self.schedule(routes, way_home=way_home) is None:
             found.add("time")
         return found
 
+    def _carries(self, route):
+        """Whether all that a robot delivers was taken on board by itself before."""
+        return all(j not in self.delivers or self.delivers[j] in route[:number] for number, j in enumerate(route))
+
     def _too_long(self, routes, *, way_home):
         """Whether usages are above capacities, and routes end after their shifts."""
-        found, times = set(), self.schedule(routes)
+        found, times = set(), self.schedule(routes, way_home=way_home)
         durations = {j: self.duration_s(j, members) for j, members in self.teams(routes).items()}
         for i, (robot, route) in enumerate(zip(self.robots, routes, strict=True)):
             usage = self.ways(i, route, durations)[1] + (self.way_home(i, route) if way_home else 0.0)
@@ -291,8 +363,8 @@ class Meaning:
             if not math.isfinite(usage):
                 found.add("unreachable")
             if route and times and self._holds("shift") and robot.available_until_s is not None:
-                home = self.way_home(i, route, "seconds") if way_home else 0.0
-                if times[1][route[-1]] + home > robot.available_until_s + ROUNDING:
+                back = self.back(i, route, times[1]) if way_home else times[1][route[-1]]
+                if back is None or back > robot.available_until_s + ROUNDING:
                     found.add("shift")
         return found
 

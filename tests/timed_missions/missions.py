@@ -1,10 +1,11 @@
 """Random small missions with every key of time and teams, by seed."""
 
+import contextlib
 import math
 from dataclasses import replace
 from random import Random
 
-from muster import Mission, Robot, Rules, Task
+from muster import Mission, MissionError, Robot, Rules, Task
 from muster.mission.model import Lag, TeamPart
 from tests.random_missions import with_travel_tables
 
@@ -24,6 +25,7 @@ IGNORED = (
     "suitability",
 )
 RULES = ("window", "deadline", "due", "shift", "lag", "team", "needs", "relation", "starts-with", "capacity", "skills")
+FURTHER = ("shifts", "duty", "either-or", "aboard")
 
 
 def timed_mission(seed, *, tasks=None, robots=None):
@@ -64,6 +66,64 @@ def ignored_in(seed):
     """The rules that are ignored in the trial of a seed: mostly none."""
     random = Random(f"ignored {seed}")
     return tuple(sorted(random.sample(IGNORED, random.choice((0, 0, 0, 0, 1, 2)))))
+
+
+def with_further_rules(mission, seed):
+    """The mission, in which some robots have several shifts and longest duties, and tasks alternatives and deliveries.
+
+    Planning does not know these rules yet: they are for the judge.
+    """
+    random = Random(f"further {seed}")
+    has = {rule for rule in FURTHER if random.random() < 0.5}
+    robots = tuple(_with_rests(random, robot, has) for robot in mission.robots)
+    tasks = _carrying(random, list(mission.tasks)) if "aboard" in has else list(mission.tasks)
+    for k in range(len(tasks) if "either-or" in has else 0):
+        j = random.randrange(len(tasks))
+        if j != k and random.random() < 0.4:
+            tied = [replace(one, either_or=(tasks[j].id,)) if one is tasks[k] else one for one in tasks]
+            with contextlib.suppress(MissionError):  # some task needs both
+                tasks = list(replace(mission, tasks=tuple(tied)).tasks)
+    return replace(mission, robots=robots, tasks=tuple(tasks))
+
+
+def further_ignored_in(seed):
+    """The rules that are ignored where the further rules are judged: mostly none."""
+    random = Random(f"further ignored {seed}")
+    more = random.sample(("shift", "duty", "aboard", "either-or", "load"), random.choice((0, 0, 0, 0, 1, 2)))
+    return tuple(sorted({*ignored_in(seed), *more}))
+
+
+def _with_rests(random, robot, has):
+    changes = {}
+    if "shifts" in has and random.random() < 0.7:
+        at, shifts = random.choice((0.0, robot.available_from_s)), []
+        for _ in range(random.choice((1, 2, 2, 3))):
+            end = at + random.uniform(4, 25)
+            shifts.append((round(at, 3), round(end, 3)))
+            at = end + random.choice((0, 3, random.uniform(1, 20)))
+        if random.random() < 0.3:
+            shifts[-1] = (shifts[-1][0], None)
+        changes = {"shifts_s": tuple(shifts), "available_from_s": 0.0, "available_until_s": None}
+    if "duty" in has and random.random() < 0.7:
+        changes["longest_duty_s"] = round(random.uniform(3, 40), 3)
+    return replace(robot, **changes)
+
+
+def _carrying(random, tasks):
+    """Some tasks deliver what others take on board, most of them within some time."""
+    free = [k for k, task in enumerate(tasks) if not (task.robots_needed or task.team or task.needs)]
+    random.shuffle(free)
+    for j, k in zip(free[::2], free[1::2], strict=False):
+        longest = random.choice((None, 0.0, round(random.uniform(0.5, 8), 3), round(random.uniform(1, 25), 3)))
+        longer = list(tasks)
+        longer[j] = replace(tasks[j], load=1)
+        longer[k] = replace(tasks[k], delivers=tasks[j].id, longest_aboard_s=longest)
+        with contextlib.suppress(MissionError):  # waits for what waits for it
+            Mission(
+                robots=(Robot(id="r", position=(0, 0)),), tasks=tuple(replace(one, only_robots=None) for one in longer)
+            )
+            tasks = longer
+    return tasks
 
 
 def _place(random):

@@ -1,5 +1,6 @@
 """The enumeration of timed missions, by hand, and against judge and bounds; `make campaign-times` tries thousands."""
 
+from collections import Counter
 from dataclasses import replace
 
 import pytest
@@ -12,13 +13,20 @@ from muster.model.rules.capacity import CapacityChange
 from muster.model.rules.window import LongerWindow
 from tests.timed_missions.every_plan import EveryPlan
 from tests.timed_missions.meaning import Meaning
-from tests.timed_missions.missions import OBJECTIVES, RULES, ignored_in, timed_mission
+from tests.timed_missions.missions import (
+    OBJECTIVES,
+    RULES,
+    further_ignored_in,
+    ignored_in,
+    timed_mission,
+    with_further_rules,
+)
 from tests.timed_missions.places import LIMITS, Places
 from tests.timed_missions.possibilities import Possibilities
 from tests.timed_missions.remedied import Remedied
-from tests.timed_missions.trial import Report, Trial, trial
+from tests.timed_missions.trial import Report, Trial, judged_trial, trial
 
-MISSIONS, CHUNK = 45, 15
+MISSIONS, CHUNK, FURTHER = 45, 15, 120
 
 
 @pytest.mark.long(keep=1)
@@ -40,6 +48,41 @@ def test_the_exact_solver_finds_the_best_of_every_plan(first):
         tried.exactly(tried.problem)
         failures |= {seed: report.failures} if report.failures else {}
     assert failures == {}
+
+
+@pytest.mark.long(keep=1)
+@pytest.mark.parametrize("first", range(0, 2 * FURTHER, FURTHER))
+def test_the_judge_agrees_with_the_meaning_of_rules_that_planning_does_not_know(first):
+    reports = [judged_trial(seed) for seed in range(first, first + FURTHER)]
+    assert {report.seed: report.failures for report in reports if report.failures} == {}
+    counts = sum((report.counts for report in reports), Counter())
+    alone = {f"judged: {kind} alone" for kind in ("shift", "duty", "aboard", "either-or")}
+    assert alone <= counts.keys()
+
+
+def test_the_missions_have_every_further_rule():
+    missions = [with_further_rules(timed_mission(seed), seed) for seed in range(100)]
+    assert {word for seed in range(300) for word in further_ignored_in(seed)} >= {
+        "shift",
+        "duty",
+        "aboard",
+        "either-or",
+    }
+    robots = [robot for mission in missions for robot in mission.robots]
+    tasks = [task for mission in missions for task in mission.tasks]
+    for values in (
+        [robot.shifts_s for robot in robots],
+        [robot.longest_duty_s for robot in robots],
+        [task.longest_aboard_s is not None for task in tasks],
+        [task.either_or for task in tasks],
+    ):
+        assert 0.01 < sum(bool(value) for value in values) / len(values) < 0.95
+
+
+def test_a_judge_that_errs_is_found(monkeypatch):
+    monkeypatch.setattr("muster.verification.rules.duty.Duty.spans", lambda rule, route: iter(()))
+    failures = [failure for seed in range(40) for failure in judged_trial(seed).failures]
+    assert any("but it breaks {'time'}" in failure for failure in failures)
 
 
 def test_a_trial_that_goes_wrong_is_a_failure(monkeypatch):
@@ -167,6 +210,39 @@ def test_a_robot_does_at_least_so_many_tasks_or_none():
     assert Meaning(shy).faults(((0,), (1,))) == {"min-tasks"}
     assert not Meaning(shy, ignored=("min-tasks",)).faults(((0,), (1,)))
     assert len(EveryPlan(Meaning(shy)).admissible) == 11 - 4  # all but those in which it does one of the two
+
+
+def robot_with(**keys):
+    """A meaning of one robot at 0 with these keys and tasks at 3 and 5, of 5 s each."""
+    tasks = (task("a", 3), task("b", 5))
+    return Meaning(
+        Mission(rules=Rules(timing="constant"), robots=(Robot(id="r", position=(0, 0), **keys),), tasks=tasks)
+    )
+
+
+def test_legs_and_work_lie_within_shifts():
+    meaning = robot_with(shifts_s=((0, 9), (20, 27)), return_to_start=True)
+    assert meaning.schedule(((0, 1),)) == ({0: 3, 1: 22}, {0: 8, 1: 27})  # the way to b waits for the second shift
+    assert meaning.faults(((0, 1),)) == {"shift"}
+    assert not meaning.faults(((0,),))
+    assert robot_with(shifts_s=((0, 9), (20, 26))).faults(((0, 1),)) == {"time"}
+
+
+def test_a_robot_leaves_as_late_as_its_duty_demands():
+    meaning = robot_with(longest_duty_s=15)
+    assert not meaning.faults(((0, 1),))
+    assert robot_with(longest_duty_s=14.9).faults(((0, 1),)) == {"time"}
+    late = replace(meaning.mission, tasks=(meaning.tasks[0], replace(meaning.tasks[1], window_s=((40, 50),))))
+    assert Meaning(late).schedule(((0, 1),))[0] == {0: 33, 1: 40}
+
+
+def test_of_alternatives_one_is_done_and_of_deliveries_both():
+    assert mission_of(task("a", 1), task("b", 2, either_or=("a",))).faults(((0,), (1,))) == {"either-or"}
+    meaning = mission_of(task("a", 1, load=1), task("b", 2, delivers="a", longest_aboard_s=1))
+    assert not meaning.faults(((0, 1), ()))
+    assert meaning.faults(((0,), (1,))) == meaning.faults(((1, 0), ())) == meaning.faults(((0,), ())) == {"load"}
+    meaning = mission_of(task("a", 1, load=1), task("b", 3, delivers="a", longest_aboard_s=1))
+    assert meaning.faults(((0, 1), ())) == {"time"}
 
 
 def test_lateness_is_weighed_and_cost_breaks_ties():

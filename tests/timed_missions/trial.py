@@ -21,7 +21,13 @@ from muster.verification import verify
 from tests import trials
 from tests.timed_missions.every_plan import EveryPlan
 from tests.timed_missions.meaning import Meaning
-from tests.timed_missions.missions import ignored_in, timed_mission, wrong_routes
+from tests.timed_missions.missions import (
+    further_ignored_in,
+    ignored_in,
+    timed_mission,
+    with_further_rules,
+    wrong_routes,
+)
 from tests.timed_missions.places import Places
 from tests.timed_missions.possibilities import Possibilities
 from tests.timed_missions.remedied import Remedied
@@ -56,45 +62,39 @@ def trial(seed, *, planned=True):
     return report
 
 
-class Trial:
-    """What is known of the mission of one trial."""
+def judged_trial(seed):
+    """Check the judge's verdicts on plans of the mission of a seed, in which there are the further rules."""
+    report = Report(seed)
+    with report.trying():
+        mission, ignored = with_further_rules(timed_mission(seed), seed), further_ignored_in(seed)
+        report.story += [str(part) for part in (*mission.robots, *mission.tasks, mission.rules, ignored)]
+        lax = EveryPlan(Meaning(mission, ignored=(*ignored, "shift", "duty", "aboard", "either-or")), MOST_PLANS)
+        Judging(report, mission, ignored).judged(lax.admissible)
+    return report
+
+
+class Judging:
+    """The mission of one trial, and plans of it."""
 
     def __init__(self, report, mission, ignored):
         self.report, self.mission, self.ignored = report, mission, ignored
-        self.meaning, self.problem = Meaning(mission, ignored=ignored), Problem.compile(mission, ignored=ignored)
+        self.meaning = Meaning(mission, ignored=ignored)
         self.every = EveryPlan(self.meaning, MOST_PLANS)
-        self.best, self.routes = self.every.best()
         self.random = Random(f"trial {report.seed}")
-        report.counts["missions with more plans than are built"] += not self.every.complete
-        report.story.append(f"the best of {len(self.every.admissible)} admissible plans: {self.best} {self.routes}")
 
-    def without_plans(self):
-        """The verdicts of the judge, the quick bound, and the tasks that are said to be impossible."""
-        self._judge()
-        self._bound(self.problem)
-        self._impossible(self.problem)
-
-    def with_plans(self):
-        """Plans of the allocators, and that of the exact solver."""
-        bound = lower_bound(self.problem)
-        able = those_that_can(self.problem.asked)
-        found = [self._plan(name, bound, may_refuse=name not in able) for name in FOR_ALL_RULES]
-        self._reached(found[-1])
-        self._plan(OTHERS[self.report.seed % len(OTHERS)], bound, may_refuse=True)
-        if self.report.seed % EXACT_EVERY == 0:
-            self.exactly(self.problem)
-
-    def _judge(self):
-        """The judge accepts what the enumeration accepts, and nothing else; figures agree."""
+    def judged(self, more=()):
+        """The judge accepts what the enumeration accepts, and nothing else; figures agree. Some of `more` are tried."""
         admissible = self.every.admissible
         some = self.random.sample(admissible, min(JUDGED, len(admissible)))
         wrong = [wrong_routes(self.mission, self.random) for _ in range(JUDGED)]
+        wrong += self.random.sample(more, min(JUDGED, len(more)))
         for routes in (*some, *(self._mutated(routes) for routes in some), *wrong):
             faults = self.meaning.faults(routes)
             verdict = verify(self.mission, self._written(routes), self.ignored)
             said = sorted({violation.kind for violation in verdict.violations})
             self.report.counts["judged"] += 1
             self.report.counts["judged: admissible"] += not faults
+            self.report.counts.update(f"judged: {kind} alone" for kind in said if len(said) == 1)
             self.report.check(verdict.valid == (not faults), f"judge: {routes}: {said}, but it breaks {faults}")
             if verdict.valid and not faults:
                 self._figures(routes, verdict)
@@ -119,6 +119,33 @@ class Trial:
     def _written(self, routes):
         pairs = zip(self.mission.robots, routes, strict=True)
         return Plan(routes=tuple(Route(r.id, tuple(self.mission.tasks[j].id for j in route)) for r, route in pairs))
+
+
+class Trial(Judging):
+    """What is known of the mission of one trial."""
+
+    def __init__(self, report, mission, ignored):
+        self.problem = Problem.compile(mission, ignored=ignored)
+        super().__init__(report, mission, ignored)
+        self.best, self.routes = self.every.best()
+        report.counts["missions with more plans than are built"] += not self.every.complete
+        report.story.append(f"the best of {len(self.every.admissible)} admissible plans: {self.best} {self.routes}")
+
+    def without_plans(self):
+        """The verdicts of the judge, the quick bound, and the tasks that are said to be impossible."""
+        self.judged()
+        self._bound(self.problem)
+        self._impossible(self.problem)
+
+    def with_plans(self):
+        """Plans of the allocators, and that of the exact solver."""
+        bound = lower_bound(self.problem)
+        able = those_that_can(self.problem.asked)
+        found = [self._plan(name, bound, may_refuse=name not in able) for name in FOR_ALL_RULES]
+        self._reached(found[-1])
+        self._plan(OTHERS[self.report.seed % len(OTHERS)], bound, may_refuse=True)
+        if self.report.seed % EXACT_EVERY == 0:
+            self.exactly(self.problem)
 
     def _numbered(self, plan):
         by_robot = {route.robot: tuple(self.meaning.number[name] for name in route.tasks) for route in plan.routes}

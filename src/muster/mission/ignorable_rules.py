@@ -4,22 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import MISSING, fields, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from muster.mission.errors import ParameterError
+from muster.mission.records import rules_named_by
+from muster.mission.robots import Robot
+from muster.mission.stations import Station
+from muster.mission.tasks import Task
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
 
-if TYPE_CHECKING:
-    from muster.mission.robots import Robot
-    from muster.mission.tasks import Task
-
-IGNORABLE = (
+_FIRST = (
     *("prerequisite", "suitability", "skill", "lock", "capacity"),
-    *("window", "deadline", "shift", "team", "relation", "load", "battery", "min-tasks"),
+    *("window", "deadline", "shift", "team", "relation", "load", "battery"),
 )
-_AS_THEY_ARE = ("suitability", "lock", "capacity", "battery", "min-tasks")
-_PLURALS = {f"{rule}s": rule for rule in IGNORABLE if rule not in _AS_THEY_ARE}
+IGNORABLE = tuple(dict.fromkeys((*_FIRST, *rules_named_by(Robot, Task, Station))))
+"""The words of the first rules, and behind them those that keys of missions name as their rule's."""
+
+_AS_THEY_ARE = ("suitability", "lock", "capacity", "battery")
+_PLURALS = {f"{rule}s": rule for rule in _FIRST if rule not in _AS_THEY_ARE}
 """Words of earlier files and commands, read as before; and the like of the others."""
 _KEYS: Mapping[str, tuple[str, ...]] = {
     "prerequisite": ("lags",),
@@ -31,8 +34,8 @@ _KEYS: Mapping[str, tuple[str, ...]] = {
     "load": ("load", "delivers", "load_capacity", "load_at_start"),
     "battery": ("battery",),
 }
-"""By rule the keys of tasks and robots that are as by default where it does not hold."""
-T = TypeVar("T", "Task", "Robot")
+"""By rule the keys of tasks and robots that are as by default where it does not hold, beside those that name it."""
+T = TypeVar("T", Task, Robot)
 
 
 def ignorable_rule(word: object) -> str | None:
@@ -65,5 +68,6 @@ def ignored_rules(words: str | Collection[str]) -> tuple[str, ...]:
 def as_it_holds(item: T, ignored: Collection[str]) -> T:
     """A task or robot without the rules that do not hold about times, teams, goods and energy."""
     keys = {key for rule in ignored for key in _KEYS.get(rule, ())}
-    without = {f.name: {} if f.default is MISSING else f.default for f in fields(item) if f.name in keys}
+    off = [f for f in fields(item) if f.name in keys or f.metadata.get("rule") in ignored]
+    without = {f.name: {} if f.default is MISSING else f.default for f in off}
     return replace(item, **without) if without else item

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from muster.mission.goods import Amount, Amounts, by_commodity
@@ -15,6 +15,7 @@ from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import Choice, Fault, Flag, Many, Number, Position, Table, Text, Whole, shown
 from muster.mission.values.clock_times import SHIFT
 from muster.mission.values.energy import ENDURANCE, RANGE
+from muster.mission.values.time_types import Window, Windows
 
 MOST_PIXELS = (1920, 1440)
 """Of a simulated camera's picture: width and height."""
@@ -30,6 +31,21 @@ class Camera(Checked):
     width_px: int = spec(Whole(minimum=1, maximum=MOST_PIXELS[0]), "width of its picture", default=640)
     height_px: int = spec(Whole(minimum=1, maximum=MOST_PIXELS[1]), "height of its picture", default=480)
     rate_hz: float = spec(Number(above=0, maximum=100), "pictures a second", default=2.0)
+
+
+_AVAILABLE: Mapping[str, float | None] = {"available_from_s": 0.0, "available_until_s": None}
+"""What a file that does not say when a robot is available means."""
+
+
+def _joined(shifts: Sequence[Window]) -> tuple[Window, ...]:
+    """The shifts in order, those that touch made one: there is no break between them."""
+    joined: list[Window] = []
+    for begins, ends in shifts:
+        if joined and joined[-1][1] == begins:
+            joined[-1] = (joined[-1][0], ends)
+        else:
+            joined.append((begins, ends))
+    return tuple(joined)
 
 
 @record
@@ -78,7 +94,25 @@ class Robot(Checked):
         instead=SHIFT,
         if_used=True,
     )
-    min_tasks: int = spec(Whole(), "it does at least so many tasks, or none at all", default=0, if_used=True)
+    shifts_s: tuple[Window, ...] = spec(
+        Windows(),
+        "when it works and drives: several shifts, between which it rests where it stands",
+        default=(),
+        if_used=True,
+        rule="shift",
+        planned=False,
+    )
+    min_tasks: int = spec(
+        Whole(), "it does at least so many tasks, or none at all", default=0, if_used=True, rule="min-tasks"
+    )
+    longest_duty_s: float | None = spec(
+        Number(minimum=0),
+        "longest time from leaving its start to the end of its route",
+        default=None,
+        if_used=True,
+        rule="duty",
+        planned=False,
+    )
     heading_deg: float = spec(Number(), "heading at the start, from east, anticlockwise", default=0.0)
     radius_m: float = spec(Number(minimum=0), "radius of its body", default=0.0)
     kind: str = spec(Choice(("ground", "air")), "where it moves", default="ground")
@@ -91,7 +125,21 @@ class Robot(Checked):
     avoidance_priority: float = spec(Number(minimum=0), "who gives way: the lower one", default=0.0)
     camera: Camera | None = spec(Record(Camera, "a camera"), "its camera", default=None)
 
-    tied = frozenset({"skill_quality", "available_until_s", "load_at_start"})
+    tied = frozenset({"skill_quality", "available_until_s", "shifts_s", "load_at_start"})
+
+    @classmethod
+    def settled(cls, values: Mapping[str, Any]) -> Mapping[str, Any]:
+        """With `shifts_s` the robot is available from the first shift until the last; one shift alone says no more."""
+        shifts = _joined(values.get("shifts_s", ()))
+        if not shifts:
+            return {}
+        bounds = {"available_from_s": shifts[0][0], "available_until_s": shifts[-1][1]}
+        if any(values.get(name, _AVAILABLE[name]) not in (_AVAILABLE[name], bound) for name, bound in bounds.items()):
+            return {}  # a fault
+        return {"shifts_s": shifts if len(shifts) > 1 else (), **bounds}
+
+    def file_values(self) -> Mapping[str, Any]:
+        return _AVAILABLE if self.shifts_s else {}
 
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
@@ -100,6 +148,13 @@ class Robot(Checked):
             if name not in skills:
                 yield Fault(("skill_quality", name), shown(name), f"one of its skills{did_you_mean(name, skills)}")
         begins, ends = values.get("available_from_s", 0.0), values.get("available_until_s")
+        shifts = values.get("shifts_s") or ((begins, ends),)
+        for name, given, bound in (
+            ("available_from_s", begins, shifts[0][0]),
+            ("available_until_s", ends, shifts[-1][1]),
+        ):
+            if given not in (_AVAILABLE[name], bound):
+                yield Fault((name,), shown(given), f"{name} or shifts_s, not both")
         if ends is not None and ends < begins:
             yield Fault(("available_until_s",), shown(ends), f"a number of at least available_from_s ({begins:g})")
         most = values.get("load_capacity")

@@ -55,6 +55,13 @@ class Station(Checked):
     )
     swap_s: float = spec(Number(minimum=0), "how long a swap takes", default=0.0)
     partial: bool = spec(Flag(), "whether a charge may end before the battery is full", default=True)
+    only_robots: tuple[str, ...] | None = spec(
+        Many(Text(), minimum=1),
+        "ids of the only robots that may call there",
+        default=None,
+        rule="lock",
+        carried_out=False,
+    )
 
     @property
     def charges(self) -> bool:

@@ -1,15 +1,18 @@
-"""Refuses features that this version can neither plan nor judge yet, for planner and judge alike."""
+"""Refuses features that this version can neither plan nor judge yet, and rules that it can judge or plan alone."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain, product
 
 from muster.mission.errors import NotSupportedError
 from muster.mission.goods import by_commodity
+from muster.mission.mission_parts import all_robots, all_work
 from muster.mission.model import Action, Mission, Point, Task
-from muster.mission.records import findings
-from muster.mission.value_types import Fault, shown
+from muster.mission.records import findings, stated_rules
+from muster.mission.value_types import Fault, Path, shown
+from muster.mission.yaml_writer import plain
 
 _LARGEST_COORDINATE = 1e150  # the square of a greater one may be beyond float64
 _MOST_LANES = 10_000  # of a raster search
@@ -17,7 +20,30 @@ _STRETCH = 1e7  # an observer stands no farther away than a million times what i
 
 
 def require_supported(mission: Mission) -> None:
-    """Refuse a mission that asks for more than this version can do.
+    """Refuse a mission that asks for more than this version can plan.
+
+    Raises
+    ------
+    NotSupportedError
+        for rules that only the judge knows yet, and for all that `require_judged` refuses.
+    """
+    _refuse(mission, chain(_unsupported(mission), _unknown(mission, {"planned": "planning"})))
+
+
+def require_carried_out(mission: Mission) -> None:
+    """Refuse a mission that asks for more than this version can carry out.
+
+    Raises
+    ------
+    NotSupportedError
+        for rules that runs do not know yet, and for all that `require_supported` refuses.
+    """
+    require_supported(mission)
+    _refuse(mission, _unknown(mission, {"carried_out": "carrying out"}))
+
+
+def require_judged(mission: Mission) -> None:
+    """Refuse a mission that asks for more than this version can judge.
 
     Raises
     ------
@@ -25,9 +51,24 @@ def require_supported(mission: Mission) -> None:
         for actions with geometry beside travel tables, which do not know where they begin and end; for raster searches
         of very many lanes; and for numbers whose sums may overflow.
     """
-    found = findings(_unsupported(mission), mission.source)
+    _refuse(mission, _unsupported(mission))
+
+
+def _refuse(mission: Mission, faults: Iterable[Fault]) -> None:
+    found = findings(faults, mission.source)
     if found:
         raise NotSupportedError(found)
+
+
+def _unknown(mission: Mission, to: Mapping[str, str]) -> Iterator[Fault]:
+    """Rules that a part of this version does not know, by the word for that in the keys, and its name."""
+    stations = ((("stations", k), station) for k, station in enumerate(mission.stations))
+    records: Iterable[tuple[Path, object]] = chain(all_robots(mission), all_work(mission), stations)
+    for path, one in records:
+        for f, (word, name) in product(stated_rules(one), to.items()):
+            if not f.metadata.get(word, True):
+                expected = f"nothing here yet: {name} does not know this rule"
+                yield Fault((*path, f.name), shown(plain(getattr(one, f.name))), expected)
 
 
 def _unsupported(mission: Mission) -> Iterator[Fault]:

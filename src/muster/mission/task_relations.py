@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import combinations
 from operator import attrgetter
 
 from muster.mission.mission_data import MissionData
@@ -10,7 +11,7 @@ from muster.mission.mission_parts import new_tasks, unknown_id, work_that
 from muster.mission.tasks import Task, Work
 from muster.mission.value_types import Fault, Path, shown
 
-RELATIONS = ("same_robot_as", "other_robot_than", "starts_with")
+RELATIONS = ("same_robot_as", "other_robot_than", "starts_with", "either_or")
 _tasks_named_by = attrgetter(*RELATIONS)
 
 
@@ -22,6 +23,8 @@ def relation_faults(mission: MissionData) -> Iterator[Fault]:
     """What is wrong with the relations between tasks."""
     yield from _wrong_names(mission)
     yield from _contradictions(mission.tasks)
+    yield from _needed_together(mission.tasks)
+    yield from _split_alternatives(mission)
 
 
 def tied_by(relation: str, tasks: Sequence[Task]) -> list[int]:
@@ -53,6 +56,15 @@ def units_of(tasks: Collection[Task]) -> dict[str, tuple[str, ...]]:
     for task, first in zip(listed, tied, strict=True):
         units.setdefault(first, []).append(task.id)
     return {task.id: tuple(units[first]) for task, first in zip(listed, tied, strict=True)}
+
+
+def alternatives_of(tasks: Collection[Task]) -> list[tuple[str, ...]]:
+    """The sets of tasks of which at most one is done, in the order given; most tasks are alone in theirs."""
+    listed = list(tasks)
+    sets: dict[int, list[str]] = {}
+    for task, first in zip(listed, tied_by("either_or", listed), strict=True):
+        sets.setdefault(first, []).append(task.id)
+    return [tuple(names) for names in sets.values()]
 
 
 def _wrong_names(mission: MissionData) -> Iterator[Fault]:
@@ -121,3 +133,58 @@ def _chain(tasks: Sequence[Task], start: int, end: int) -> list[int]:
                 ways[there] = [*ways[here], there]
                 queue.append(there)
     return ways[end]
+
+
+def _needed_together(tasks: Sequence[Task]) -> Iterator[Fault]:
+    """For two alternatives that one task needs the first such task: it can never be done."""
+    sets = [names for names in alternatives_of(tasks) if len(names) > 1]
+    if not sets:
+        return
+    needing, number = _needing(tasks), {task.id: k for k, task in enumerate(tasks)}
+    for names in sets:
+        after = {name: _reached(needing, name) for name in names}
+        for one, other in combinations(names, 2):
+            both = [tasks[number[name]] for name in after[one] & after[other]]
+            keyed = [(task, key) for task in both for key in _KEYS_OF_NEEDS if getattr(task, key)]
+            if keyed:
+                task, key = min(keyed, key=lambda found: (found[0].id not in (one, other), number[found[0].id]))
+                first = task.id
+                value = f"{first} is done only together with {' and '.join(n for n in (one, other) if n != first)}"
+                expected = f"tasks that a plan may do together: by either_or it does at most one of {', '.join(names)}"
+                yield Fault(("tasks", number[first], key), value, expected)
+
+
+_KEYS_OF_NEEDS = ("prerequisites", "starts_with", "delivers", "either_or")
+
+
+def _needing(tasks: Sequence[Task]) -> Mapping[str, set[str]]:
+    """For each task those that are done only together with it."""
+    needing: dict[str, set[str]] = {task.id: set() for task in tasks}
+    for task in tasks:
+        for name in (*task.prerequisites, *task.starts_with, task.delivers):
+            if name in needing:
+                needing[name].add(task.id)
+                if name not in task.prerequisites:
+                    needing[task.id].add(name)
+    return needing
+
+
+def _reached(needing: Mapping[str, set[str]], start: str) -> set[str]:
+    found = {start}
+    for name in (waiting := [start]):
+        waiting += needing[name] - found
+        found |= needing[name]
+    return found
+
+
+def _split_alternatives(mission: MissionData) -> Iterator[Fault]:
+    """Areas that are split into tasks of which all are to be done, and not one."""
+    split = {task.id for task in mission.tasks if task.action is not None and task.action.split is not None}
+    for path, work in work_that(_has_alternatives, mission):
+        at, whole = (*path, "either_or"), (getattr(work, "id", ""), *work.either_or)
+        for name in (name for name in whole if name in split):
+            yield Fault(at, f"{shown(name)}, whose area is split", "tasks whose areas are not split")
+
+
+def _has_alternatives(work: Work) -> bool:
+    return bool(work.either_or)

@@ -177,11 +177,27 @@ class Work(Checked):
     starts_with: tuple[str, ...] = spec(
         OneOrMany(Text()), "ids of tasks that other robots begin at the same moment", default=(), if_used=True
     )
+    either_or: tuple[str, ...] = spec(
+        OneOrMany(Text()),
+        "ids of tasks in whose place it is done: of all that are tied so at most one is",
+        default=(),
+        if_used=True,
+        rule="either-or",
+        carried_out=False,
+    )
     load: Amount | None = spec(
         Amounts(), "what it takes on board, or by commodity; below 0: puts down", default=None, if_used=True
     )
     delivers: str | None = spec(
         Text(), "id of the task whose load the same robot puts down here", default=None, if_used=True
+    )
+    longest_aboard_s: float | None = spec(
+        Number(minimum=0),
+        "longest time from the end of the task that it delivers to its own begin",
+        default=None,
+        if_used=True,
+        rule="aboard",
+        carried_out=False,
     )
     duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
     priority: float = spec(Number(above=0), "weight among the tasks completed", default=1.0)
@@ -196,7 +212,9 @@ class Work(Checked):
     lags: Mapping[str, Lag] = field(default_factory=dict, hash=False)
     """By prerequisite, those that have one; in files they stand inside `prerequisites`."""
 
-    tied = frozenset({"prerequisites", "lags", "robots_needed", "team", "needs", "load", "delivers", "action"})
+    tied = frozenset(
+        {"prerequisites", "lags", "robots_needed", "team", "needs", "load", "delivers", "longest_aboard_s", "action"}
+    )
 
     @property
     def is_for_team(self) -> bool:
@@ -236,7 +254,7 @@ class Work(Checked):
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
         yield from _team_faults(values)
-        yield from _goods_of_a_team(values)
+        yield from _goods_faults(values)
         yield from _lag_faults(values.get("lags", {}), values.get("prerequisites", ()))
         action = values.get("action")
         if action is not None and action.has_geometry and values.get("actuation_cost"):
@@ -263,11 +281,14 @@ def _team_faults(values: Mapping[str, Any]) -> Iterable[Fault]:
         yield Fault((ways[1],), f"beside {ways[0]}", "at most one of robots_needed, team, needs")
 
 
-def _goods_of_a_team(values: Mapping[str, Any]) -> Iterable[Fault]:
+def _goods_faults(values: Mapping[str, Any]) -> Iterable[Fault]:
     many = (values.get("robots_needed") or 1) > 1 or values.get("team") or values.get("needs")
     for name in ("load", "delivers"):
         if many and values.get(name) is not None:
             yield Fault((name,), shown(values[name]), "a task for one robot: goods are on board of one")
+    longest = values.get("longest_aboard_s")
+    if longest is not None and values.get("delivers") is None:
+        yield Fault(("longest_aboard_s",), shown(longest), "delivers beside it: whose load is on board so long")
 
 
 @record

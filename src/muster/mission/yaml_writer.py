@@ -63,14 +63,19 @@ def plain(value: Any) -> Any:
         return {key: plain(item) for key, item in value.items()}
     if hasattr(value, "__dataclass_fields__"):
         fields = specified(type(value))
-        given = {key_of(f): _file_form(f, value) for f in fields if getattr(value, f.name) != f.default}
+        given = {key_of(f): _file_form(f, value) for f in fields if _file_value(f, value) != f.default}
         return given | plain(getattr(value, "extra", {}))
     return value
 
 
+def _file_value(f: Field[Any], value: Any) -> Any:
+    """The value of a field's key in a file."""
+    return value.file_values().get(f.name, getattr(value, f.name))
+
+
 def _file_form(f: Field[Any], value: Any) -> Any:
-    """The value of a field as plain data."""
-    item = value.file_values().get(f.name, getattr(value, f.name))
+    """The value of a field's key as plain data."""
+    item = _file_value(f, value)
     kind = f.metadata["kind"]
     return plain(kind.file_form(item) if isinstance(kind, FileForm) and item is not None else item)
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.values.arrays import Floats
+from muster.mission.values.arrays import Bools, Floats
 from muster.model.parts import Meter, Service
 from muster.model.plan_model import PlanModel
 from muster.model.rules import Question
@@ -32,6 +32,7 @@ def core_arrays(problem: Question, profiles: Sequence[LegTimes]) -> dict[str, An
         "energy": model.energy if model.parts.energy else _NONE,
         "energy_at_start": model.energy_at_start if model.parts.energy else _NONE,
         "stations": [_station(station) for station in model.stations],
+        "calls": _calls(model, len(model.stations)),
         **_profiles(profiles),
         "makespan_includes_return": problem.mission.rules.makespan_includes_return,
     }
@@ -56,6 +57,7 @@ def _crews(model: PlanModel, kinds: npt.NDArray[np.int32]) -> dict[str, Any]:
     able = {name: who for j in tasks for name, (_, who) in model.sums(j).items()}
     return {
         "unit": np.array([] if alone else model.unit, dtype=np.int32),
+        "exclusive": model.exclusive if model.parts.exclusive else [],
         "same_crew": model.same_crew if model.parts.same_crew else [],
         "apart": model.apart if model.parts.apart else [],
         "parts": [
@@ -86,6 +88,12 @@ def _meters(model: PlanModel) -> dict[str, Any]:
         "load_at_start": columns(lambda meter: meter.at_start),
         "pending_at_start": columns(lambda meter: meter.pending_at_start),
     }
+
+
+def _calls(model: PlanModel, stations: int) -> Bools:
+    if not model.parts.no_calls:
+        return np.empty(0, dtype=np.bool_)
+    return np.array([[model.may_call(i, k) for k in range(stations)] for i in range(model.robots)], dtype=np.bool_)
 
 
 def _station(station: Service) -> tuple[float, float, bool, bool, int]:

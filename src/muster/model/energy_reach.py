@@ -73,7 +73,9 @@ class _Reach:
         self._full = float(problem.model.energy[i])
         self._slack = _ROUNDING * (1 + self._full)
         self._work = problem.work_usage(i)
-        self._filling = [k for k, station in enumerate(problem.stations, 2) if station.gives_energy]
+        self._filling = [
+            k + 2 for k, s in enumerate(problem.stations) if s.gives_energy and problem.model.may_call(i, k)
+        ]
         at_start = float(problem.model.energy_at_start[i])
         self._levels = self._with_stations({0: at_start}, self._between[0], at_start)
         self._ends = self._to_end() if problem.robots[i].place_at_end(problem.mission.rules) is not None else None

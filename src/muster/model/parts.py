@@ -101,6 +101,8 @@ class Parts:
     together: list[tuple[int, int]] = field(default_factory=list)
     same_crew: dict[int, set[int]] = field(default_factory=dict)
     apart: dict[int, set[int]] = field(default_factory=dict)
+    exclusive: dict[int, set[int]] = field(default_factory=dict)
+    no_calls: set[tuple[int, int]] = field(default_factory=set)
     seats: dict[int, Seats] = field(default_factory=dict)
     sums: dict[int, dict[str, tuple[float, Floats]]] = field(default_factory=dict)
     taken_on_by: dict[int, int] = field(default_factory=dict)
@@ -146,6 +148,14 @@ class Parts:
     def by_others(self, j: int, k: int) -> None:
         """No robot does both."""
         _both(self.apart, j, k)
+
+    def exclude(self, j: int, k: int) -> None:
+        """At most one of the tasks is done."""
+        _both(self.exclusive, j, k)
+
+    def keep_away(self, i: int, station: int) -> None:
+        """Robot i does not call at a station."""
+        self.no_calls.add((i, station))
 
     def seat(self, j: int, seats: Seats) -> None:
         """So many robots of each sort do task j, at once."""

@@ -116,13 +116,8 @@ class PlanModel:
     @cached_property
     def awaited(self) -> list[list[int]]:
         """For each task those that are done before it, also the one that takes on board what it delivers."""
-        pairs = zip(self.stated, self.pickups, strict=True)
-        return [sorted({*before, pickup} - {-1}) for before, pickup in pairs]
-
-    @cached_property
-    def stated(self) -> list[list[int]]:
-        """For each task those that rules say come before it."""
-        return [sorted(self.parts.gaps.get(j, ())) for j in range(self.tasks)]
+        pickups = enumerate(self.pickups)
+        return [sorted({*self.parts.gaps.get(j, ()), pickup} - {-1}) for j, pickup in pickups]
 
     @cached_property
     def units(self) -> list[list[int]]:
@@ -151,6 +146,21 @@ class PlanModel:
     def apart(self) -> list[list[int]]:
         """For each task those that none of its robots does."""
         return [sorted(self.parts.apart.get(j, ())) for j in range(self.tasks)]
+
+    @cached_property
+    def exclusive(self) -> list[list[int]]:
+        """For each task those of which none is done if it is."""
+        return [sorted(self.parts.exclusive.get(j, ())) for j in range(self.tasks)]
+
+    @property
+    def most_done(self) -> int:
+        """How many tasks a plan does at most: of those that exclude each other one."""
+        pairs = [(j, k) for j, others in self.parts.exclusive.items() for k in others]
+        return len(set(_joined(pairs, self.tasks))) if pairs else self.tasks
+
+    def may_call(self, i: int, station: int) -> bool:
+        """Whether a robot may call at a station."""
+        return (i, station) not in self.parts.no_calls
 
     @property
     def with_relations(self) -> bool:

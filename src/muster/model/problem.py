@@ -94,7 +94,9 @@ class Problem:
         require_supported(mission)
         ignored = ignored_rules(ignored)
         if "lock" in ignored:  # taken off the tasks, as planning makes locks of its own
-            mission = replace(mission, tasks=tuple(replace(task, only_robots=None) for task in mission.tasks))
+            tasks = tuple(replace(task, only_robots=None) for task in mission.tasks)
+            stations = tuple(replace(station, only_robots=None) for station in mission.stations)
+            mission = replace(mission, tasks=tasks, stations=stations)
         return cls(
             mission=mission,
             objective=objective,
@@ -187,10 +189,14 @@ class Problem:
         """(m,) the most usage of a robot; inf where unlimited."""
         return self.model.capacity
 
-    @property
+    @cached_property
     def prerequisites(self) -> list[list[int]]:
-        """For each task those before it, but those that are so only as they take on what it delivers."""
-        return self.model.stated
+        """For each task those before it, but one that is so only as it takes on what the task delivers."""
+        found = zip(self.tasks, self.model.awaited, self.model.pickups, strict=True)
+        return [
+            [k for k in before if k != pickup or self.tasks[k].id in task.prerequisites]
+            for task, before, pickup in found
+        ]
 
     def with_partner(self, j: int) -> tuple[int, ...]:
         """A task, with all that can only be done together with it where transports are among them, in order.

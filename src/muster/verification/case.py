@@ -8,6 +8,8 @@ from functools import cached_property
 from itertools import pairwise
 
 from muster.mission.model import Mission, Robot, Task
+from muster.mission.records import stated_rules
+from muster.mission.task_relations import alternatives_of
 from muster.verification.insertions import Insertions
 from muster.verification.measure import MeasuredRoute
 from muster.verification.travel import Travel
@@ -75,6 +77,13 @@ class Case:
         return any(robot.battery is not None for robot in self.mission.robots)
 
     @cached_property
+    def alternatives(self) -> dict[str, tuple[str, ...]]:
+        """For each task those of which at most one is to be done, itself included, in mission order."""
+        tasks = self.mission.tasks
+        sets = alternatives_of(tasks) if self.holds("either-or") else [(task.id,) for task in tasks]
+        return {name: names for names in sets for name in names}
+
+    @cached_property
     def beginning_with(self) -> dict[str, list[str]]:
         """For each task those that name it in their `starts_with`."""
         named: dict[str, list[str]] = {}
@@ -124,9 +133,11 @@ class Case:
 
     @cached_property
     def is_timed(self) -> bool:
-        """Whether anything but prerequisites and capacities depends on times, teams, relations, goods or energy."""
-        late = any(robot.available_until_s is not None for robot in self.mission.robots)
-        return (late or self.has_goods or self.has_energy) or any(
+        """Whether anything but prerequisites and capacities depends on times, teams, goods or other further rules."""
+        mission = self.mission
+        late = any(robot.available_until_s is not None for robot in mission.robots)
+        further = any(map(stated_rules, (*mission.robots, *mission.tasks)))
+        return (late or further or self.has_goods or self.has_energy) or any(
             task.window_s
             or task.deadline_s is not None
             or task.lags
@@ -134,7 +145,7 @@ class Case:
             or task.same_robot_as
             or task.other_robot_than
             or task.starts_with
-            for task in self.mission.tasks
+            for task in mission.tasks
         )
 
     def holds(self, rule: str) -> bool:

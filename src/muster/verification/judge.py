@@ -10,7 +10,7 @@ from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Task
 from muster.mission.objectives import lateness, objective_values
 from muster.mission.plan import Plan
-from muster.mission.supported_features import require_supported
+from muster.mission.supported_features import require_judged
 from muster.mission.system.garbage import collector_paused
 from muster.mission.value_types import shown
 from muster.verification.book import book_faults
@@ -20,7 +20,8 @@ from muster.verification.left_out import left_out_faults
 from muster.verification.loads import Hold
 from muster.verification.measure import MeasuredRoute, Service, Step, all_measured, equality_index
 from muster.verification.rules import rules_that_hold
-from muster.verification.schedule import Deadlock, Times, schedule
+from muster.verification.schedule import schedule
+from muster.verification.schedule_nodes import Deadlock, Schedule, Times
 from muster.verification.statements import false_statements
 from muster.verification.travel import Travel
 from muster.verification.verdict import RouteFigures, Stop, Verdict, Violation, Visit
@@ -47,13 +48,13 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
     Raises
     ------
     NotSupportedError
-        if the mission asks for what is not supported yet (see `require_supported`).
+        if the mission asks for what is not supported yet (see `require_judged`).
     MissionError, MissingExtraError
         for travel over a map: if the map is wrong, or the extra that reads maps is absent.
     ParameterError
         for an unknown objective or rule.
     """
-    require_supported(mission)
+    require_judged(mission)
     ignored = ignored_rules(ignore)
     objective = mission.rules.objective if objective is None else objective
     if objective not in OBJECTIVES:
@@ -71,7 +72,7 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
     )
     violations = [*other_mission(mission, plan), *violations, *_broken_rules(case)]
     violations += [found.violation] if isinstance(found, Deadlock) else found.broken
-    verdict = _verdict(case, objective, None if isinstance(found, Deadlock) else found.times)
+    verdict = _verdict(case, objective, None if isinstance(found, Deadlock) else found)
     left_out, undecided = left_out_faults(case, plan)
     violations += left_out
     violations += false_statements(plan, verdict, travel.tolerance)
@@ -87,8 +88,9 @@ def _broken_rules(case: Case) -> Iterator[Violation]:
             yield from rule.violations(case, route)
 
 
-def _verdict(case: Case, objective: str, times: TimesOf | None) -> Verdict:
-    """Put the figures together, before anything is found wrong; without `times` the plan has no schedule."""
+def _verdict(case: Case, objective: str, found: Schedule | None) -> Verdict:
+    """Put the figures together, before anything is found wrong; None: the plan has no schedule."""
+    times = None if found is None else found.times
     usages = [route.usage for route in case.routes]
     done: dict[str, Task] = {}
     arrivals: dict[str, float] = {}  # of a team the largest
@@ -97,7 +99,7 @@ def _verdict(case: Case, objective: str, times: TimesOf | None) -> Verdict:
         arrivals[step.task.id] = max(step.arrival_usage, arrivals.get(step.task.id, 0.0))
     ends = {} if times is None else dict(_ends(case.routes, times))
     late = lateness((done[name].priority, end, done[name].due_s) for name, end in ends.items())
-    routes = tuple(_figures(case, route, times) for route in case.routes)
+    routes = tuple(_figures(case, route, found) for route in case.routes)
     back = [route.back_s for route in routes if route.back_s is not None]
     returns = back if case.mission.rules.makespan_includes_return else []
     values = objective_values(usages, list(arrivals.values()), [*ends.values(), *returns], late)
@@ -113,7 +115,7 @@ def _verdict(case: Case, objective: str, times: TimesOf | None) -> Verdict:
         lateness=None if times is None else values["lateness"],
         equality_index=equality_index(usages),
         tasks_completed=len(done),
-        tasks_total=len(case.mission.tasks),
+        tasks_total=len(set(case.alternatives.values())),
         weight_completed=sum((task.priority for task in done.values()), start=0.0),
         routes=routes,
     )
@@ -126,18 +128,19 @@ def _ends(routes: Sequence[MeasuredRoute], times: TimesOf) -> Iterator[tuple[str
                 yield stop.task.id, time.ends
 
 
-def _figures(case: Case, route: MeasuredRoute, times: TimesOf | None) -> RouteFigures:
-    own = None if times is None else times[route.robot.id]
+def _figures(case: Case, route: MeasuredRoute, found: Schedule | None) -> RouteFigures:
+    name = route.robot.id
+    own = None if found is None else found.times[name]
     return RouteFigures(
-        robot=route.robot.id,
+        robot=name,
         tasks=tuple(step.task.id for step in route.steps),
         travel=route.travel,
         work=route.work,
         usage=route.usage,
         capacity=case.capacity_of(route.robot),
-        leaves_s=route.robot.available_from_s,
+        leaves_s=route.robot.available_from_s if found is None else found.leaves[name],
         visits=() if own is None else tuple(_visits(route, own)),
-        back_s=own[-1].ends + route.last_leg.seconds if own and route.last_leg else None,
+        back_s=found.back[name] if found and own and route.last_leg else None,
         stops=() if own is None else tuple(_stops(case, route, own)),
     )
 

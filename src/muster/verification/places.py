@@ -16,7 +16,8 @@ from muster.verification.measure import MeasuredRoute, measured, work_seconds
 from muster.verification.rules import rules_that_hold
 from muster.verification.rules.pair_rule import PairRule
 from muster.verification.rules.team import team_fault
-from muster.verification.schedule import Deadlock, schedule
+from muster.verification.schedule import schedule
+from muster.verification.schedule_nodes import Deadlock
 
 MARGIN = 1e-6
 """What a limit is kept or broken by at least, relative, for a place to count."""

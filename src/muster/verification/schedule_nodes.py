@@ -4,10 +4,54 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import ClassVar, NamedTuple
 
 from muster.mission.tasks import Task
 from muster.verification.measure import MeasuredRoute, Step
 from muster.verification.station_queues import Name, Turn
+from muster.verification.verdict import Violation
+
+ROUNDING = 1e-9
+"""By how much a time may be above a limit, relative, or in seconds where it is below one."""
+
+
+class Times(NamedTuple):
+    """When the robot is at a stop, seconds."""
+
+    arrives: float
+    starts: float
+    ends: float
+
+
+@dataclass(frozen=True)
+class Deadlock:
+    """There is no schedule: tasks wait for each other in a cycle, which `violation` names step by step."""
+
+    violation: Violation
+    is_kept: ClassVar[bool] = False
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """By robot the times at the stops of its route, in order; the limits that these break.
+
+    `leaves` is when each robot leaves its start, and `back` when each route that has stops ends.
+    """
+
+    times: Mapping[str, Sequence[Times]]
+    broken: tuple[Violation, ...]
+    leaves: Mapping[str, float]
+    back: Mapping[str, float]
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether no limit is broken."""
+        return not self.broken
+
+
+def is_after(time: float, limit: float) -> bool:
+    """Whether a time is later than a limit, by more than rounding."""
+    return time > limit + ROUNDING * max(1.0, abs(limit))
 
 
 def names_of(route: MeasuredRoute) -> list[Name]:

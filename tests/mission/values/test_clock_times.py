@@ -62,6 +62,14 @@ def test_shifts(written, read):
     assert (robot.available_from_s, robot.available_until_s) == read
 
 
+def test_several_shifts():
+    robot = mission(robot=', shift: [["08:00", "12:00"], ["12:30", "17:00"]]').robots[0]
+    assert robot.shifts_s == ((0, 14400), (16200, 32400))
+    assert (robot.available_from_s, robot.available_until_s) == (0, 32400)
+    robot = mission(robot=', shift: [["09:00", "12:00"], ["12:00", "17:00"]]').robots[0]
+    assert (robot.shifts_s, robot.available_from_s, robot.available_until_s) == ((), 3600, 32400)
+
+
 def test_a_start_without_zone():
     task = mission(', window: ["10:00", 2027-03-01T11:00]', starts_at="2027-03-01T08:00").tasks[0]
     assert task.window_s == ((7200, 10800),)

@@ -8,7 +8,6 @@ coefficient (3.20) is left out, as gaps say when a dependant can follow.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from muster import core
@@ -17,7 +16,8 @@ from muster.allocation.working_roster import Routes, WorkingRoster
 from muster.model.problem import Problem
 from muster.model.rules import RULES
 
-_IN_TIME = ("makespan", "lateness")
+MOST_TASKS_OF_A_THOROUGH_RUN = 500
+"""Up to so many tasks each step chooses among all units; beyond it, mainly among those near what was placed last."""
 
 
 def append_units(problem: Problem, stop: Stop, start: Routes | None) -> Routes:
@@ -36,33 +36,8 @@ def append_units(problem: Problem, stop: Stop, start: Routes | None) -> Routes:
 
 
 def _append_units(problem: Problem, roster: WorkingRoster, robots: Sequence[int], stop: Stop) -> None:
-    refused: set[int] = set()
-    while (chosen := _select(problem, roster, robots, refused, stop)) is not None:
-        if roster.put(chosen):
-            refused.clear()
-        else:
-            refused.add(chosen.unit)
-
-
-def _select(
-    problem: Problem, roster: WorkingRoster, robots: Sequence[int], refused: set[int], stop: Stop
-) -> core.UnitInsertion | None:
-    """The matching of the least debit; of equal ones that of the first unit. None if it is time to stop, too."""
-    chosen, least = None, math.inf
-    for unit in roster.ready():
+    greedy = core.UnitGreedy(roster.core, robots, thorough=len(problem.tasks) <= MOST_TASKS_OF_A_THOROUGH_RUN)
+    while greedy.append_one():
         if stop.due():
             stop.cut()
-            return None
-        insertion = None if unit in refused else roster.best(unit, robots)
-        if insertion is None or insertion.unit in refused:  # of a transport it is that of the first task
-            continue
-        if (debit := _debit(problem, roster, insertion)) < least:
-            chosen, least = insertion, debit
-    return chosen
-
-
-def _debit(problem: Problem, roster: WorkingRoster, insertion: core.UnitInsertion) -> float:
-    if problem.objective in _IN_TIME:
-        return insertion.score
-    balanced = problem.objective != "total"
-    return insertion.growth + (roster.usage(insertion) if balanced else 0.0)
+            return

@@ -168,6 +168,8 @@ class _Robot:
             here, label = waiting.pop()
             yield from self._moved(label, here, to)
             for there, station in enumerate(self._problem.model.stations, first):
+                if not self._problem.model.may_call(self._i, there - first):
+                    continue
                 for arrived in self._moved(label, here, there) if there != here else ():
                     served, known = self._served(arrived, station), at.setdefault(there, [])
                     if served is not None and not any(other.covers(served) for other in known):

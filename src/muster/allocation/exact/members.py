@@ -77,6 +77,8 @@ def _enough_tasks(circuits: Circuits) -> None:
 def _relations(circuits: Circuits) -> None:
     rules, model = circuits.rules, circuits.model
     for j in circuits.tasks:
+        for k in (k for k in rules.exclusive[j] if k > j):
+            model.add_at_most_one(circuits.done[j], circuits.done[k])
         for k in rules.same_crew[j]:
             for i in circuits.robots:
                 a, b = circuits.does.get((i, j), 0), circuits.does.get((i, k), 0)

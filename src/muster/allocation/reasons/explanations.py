@@ -14,20 +14,32 @@ from muster.mission.plan import Reason, Unassigned
 from muster.model.problem import Problem
 from muster.model.rules import InPlan
 
+_MOST_EFFORT = 1e6  # of the reasons that come with a plan, as `TimedPlaces.effort` measures it: seconds
+
 
 def unassigned(
-    problem: Problem, routes: Sequence[Sequence[int]], hurried: Callable[[], bool] = lambda: False
+    problem: Problem,
+    routes: Sequence[Sequence[int]],
+    hurried: Callable[[], bool] = lambda: False,
+    most_effort: float = math.inf,
 ) -> tuple[Unassigned, ...]:
     """The tasks that a plan leaves out, in mission order, each with a reason for every robot.
 
-    From when `hurried` says so tasks come without reasons.
+    From when `hurried` says so tasks come without reasons, and so do those that would take more than what is left of
+    `most_effort`.
     """
     done = {j for route in routes for j in route}
     order = {task.id: k for k, task in enumerate(problem.mission.tasks)}
     missing = (j for j in range(len(problem.tasks)) if j not in done)
     left_out = sorted(missing, key=lambda j: order[problem.tasks[j].id])
     plan = in_plan(problem, routes) if left_out and not hurried() else None
-    return tuple(Unassigned(problem.tasks[j].id, _reasons(problem, plan, j, hurried)) for j in left_out)
+    found, left = list[Unassigned](), most_effort
+    for j in left_out:
+        effort = plan.effort(j) if isinstance(plan, TimedPlaces) else 0.0
+        reasons = _reasons(problem, plan, j, hurried) if effort <= left else ()
+        left -= effort if effort <= left else 0.0
+        found.append(Unassigned(problem.tasks[j].id, reasons))
+    return tuple(found)
 
 
 def _reasons(problem: Problem, plan: InPlan | None, j: int, hurried: Callable[[], bool]) -> tuple[Reason, ...]:
@@ -47,10 +59,10 @@ def unassigned_of_plan(
 
     A task that fits only before tasks that are fixed is not chosen.
     """
-    found = unassigned(problem, routes, hurried)
+    found = unassigned(problem, routes, hurried, _MOST_EFFORT)
     if not problem.fixed or not found:
         return found
-    free = unassigned(replace(problem, fixed=(), known=problem.measured), routes, hurried)
+    free = unassigned(replace(problem, fixed=(), known=problem.measured), routes, hurried, _MOST_EFFORT)
     return tuple(
         Unassigned(item.task, tuple(map(_without_beginnings, item.reasons, other.reasons)))
         for item, other in zip(found, free, strict=True)

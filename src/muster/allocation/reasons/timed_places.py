@@ -21,6 +21,7 @@ _TIES = ("together", "same_crew", "apart")
 _MOST_PLACES = 400  # of a team, the earliest first, that are looked at
 _MOST_TEAMS = 60
 _MOST_OF_WHOLE = 2_000  # ways to place inseparable tasks
+_LEAST_PLACES = 10  # that take the time in which the problem is compiled without some rules
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,20 @@ class TimedPlaces(TimedTeams):
         self._word_of = problem.model.word_of
         self.without = cache(self._without)
         self.bounds_without = cache(lambda words: RouteBounds(self.without(words)))
+
+    def effort(self, j: int) -> float:
+        """How many stops are passed, about, to look at a task at every place of every robot that may do it."""
+        problem, whole = self.problem, self.problem.with_partner(j)
+        able = (i for i in range(len(problem.robots)) if problem.may(i, j))
+        places = sum(_LEAST_PLACES + self._places_at_most(len(self._gaps(i)), whole) for i in able)
+        return float(places * len(problem.tasks))
+
+    def _places_at_most(self, gaps: int, whole: Sequence[int]) -> int:
+        """How many places of inseparable tasks are looked at, of a robot whose route has so many gaps."""
+        rules = self.problem.model
+        if any(rules.is_for_team(k) or rules.beginning_with(k) for k in whole) or len(whole) > 2:
+            return _MOST_PLACES if len(whole) == 1 else _MOST_OF_WHOLE
+        return gaps if len(whole) == 1 else gaps * (gaps + 1) // 2
 
     def with_task(self, i: int, j: int, at: int) -> list[list[int]]:
         place = self.outcome(i, j).place

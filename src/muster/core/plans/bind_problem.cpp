@@ -90,11 +90,12 @@ void bind_problem(nb::module_& m) {
              const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Indices place_class,
              Numbers table, Indices travel_class, const Openings& openings, Numbers ends_by, Numbers due,
              Numbers over_by, Numbers gap_least, Numbers gap_most, Indices unit, const Parts& parts, Numbers abilities,
-             Numbers needs, const std::vector<std::vector<int>>& same_crew, const std::vector<std::vector<int>>& apart,
+             Numbers needs, const std::vector<std::vector<int>>& exclusive,
+             const std::vector<std::vector<int>>& same_crew, const std::vector<std::vector<int>>& apart,
              Indices least_stops, Numbers acceleration, Numbers climb, Numbers turn, bool over_map,
              bool makespan_includes_return, int meters, Numbers load, Numbers pending, Indices pickup,
              Numbers most_aboard, Numbers load_at_start, Numbers pending_at_start, Numbers energy,
-             Numbers energy_at_start, const Stations& stations, Numbers waiting, Flags waits) {
+             Numbers energy_at_start, const Stations& stations, Flags calls, Numbers waiting, Flags waits) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
                 entry.ndim() != 3 || entry.shape(2) != 3 || exit.ndim() != 3 || exit.shape(2) != 3 || !table_fits) {
@@ -131,6 +132,7 @@ void bind_problem(nb::module_& m) {
             data.parts = parts_of(parts);
             data.abilities = numbers(abilities);
             data.needs = numbers(needs);
+            data.exclusive = rows(exclusive);
             data.same_crew = rows(same_crew);
             data.apart = rows(apart);
             data.least_stops.assign(least_stops.data(), least_stops.data() + least_stops.size());
@@ -148,6 +150,7 @@ void bind_problem(nb::module_& m) {
             data.pending_at_start = numbers(pending_at_start);
             data.energy = numbers(energy);
             data.energy_at_start = numbers(energy_at_start);
+            data.calls = flags(calls);
             data.stations = stations_of(stations);
             data.waiting = numbers(waiting);
             data.waits = flags(waits);
@@ -157,10 +160,10 @@ void bind_problem(nb::module_& m) {
           "fixed"_a, "actuation_cost"_a, "work_class"_a, "work_seconds"_a, "time_class"_a, "priority"_a, "kind"_a,
           "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "place_class"_a, "table"_a, "travel_class"_a,
           "openings"_a, "ends_by"_a, "due"_a, "over_by"_a, "gap_least"_a, "gap_most"_a, "unit"_a, "parts"_a,
-          "abilities"_a, "needs"_a, "same_crew"_a, "apart"_a, "least_stops"_a, "acceleration"_a, "climb"_a, "turn"_a,
-          "over_map"_a, "makespan_includes_return"_a, "meters"_a, "load"_a, "pending"_a, "pickup"_a, "most_aboard"_a,
-          "load_at_start"_a, "pending_at_start"_a, "energy"_a, "energy_at_start"_a, "stations"_a, "waiting"_a,
-          "waits"_a,
+          "abilities"_a, "needs"_a, "exclusive"_a, "same_crew"_a, "apart"_a, "least_stops"_a, "acceleration"_a,
+          "climb"_a, "turn"_a, "over_map"_a, "makespan_includes_return"_a, "meters"_a, "load"_a, "pending"_a,
+          "pickup"_a, "most_aboard"_a, "load_at_start"_a, "pending_at_start"_a, "energy"_a, "energy_at_start"_a,
+          "stations"_a, "calls"_a, "waiting"_a, "waits"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
           "`time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, "
@@ -169,7 +172,8 @@ void bind_problem(nb::module_& m) {
           "robot's "
           "`travel_class`. What is empty of the rest no task or robot has: by task `openings`, `ends_by`, `due`, "
           "`unit` "
-          "(tasks of one begin together), `parts` of teams (count, allowed by kind), `same_crew`, `apart`; by "
+          "(tasks of one begin together), `parts` of teams (count, allowed by kind), `exclusive`, `same_crew`, "
+          "`apart`; by "
           "robot `over_by`, `least_stops` (of a route that has any); `gap_least` and `gap_most` by prerequisite; "
           "`abilities` (m, a) and `needs` (n, a); by "
           "robot `acceleration`, `climb`, `turn` (seconds) of motion profiles, and `over_map` whether what is longer "

@@ -10,6 +10,7 @@
 
 #include "bindings.hpp"
 #include "plans/roster.hpp"
+#include "plans/unit_greedy.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -107,6 +108,13 @@ void bind_roster(nb::module_& m) {
       .def_prop_ro("objective", [](Roster& roster) { return roster.value().objective; })
       .def_prop_ro("routes", &Roster::routes)
       .def_prop_ro("stops", &roster_stops, "By robot: task, arrival, begin and end of each stop.");
+  nb::class_<UnitGreedy>(m, "UnitGreedy",
+                         "Greedy allocation of units of work, each to the ends of the routes where its debit is least.")
+      .def(nb::init<Roster&, const std::vector<int>&, bool>(), "roster"_a, "robots"_a, "thorough"_a,
+           nb::keep_alive<1, 2>(),
+           "`thorough`: choose as if every unit were evaluated at each step; else mainly those near what was placed.")
+      .def("append_one", &UnitGreedy::append_one, nb::call_guard<nb::gil_scoped_release>(),
+           "Put the unit of the least debit into routes; False: none fits.");
 }
 
 }  // namespace muster

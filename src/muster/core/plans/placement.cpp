@@ -25,6 +25,7 @@ Placement::Placement(Roster& roster)
       busy_(problem_.robots(), 0) {}
 
 const UnitInsertion* Placement::best(int unit, const Trial& trial) {
+  if (roster_.barred(unit)) return nullptr;
   if (const auto whole = problem_.inseparable(unit); !whole.empty()) {
     const bool is_pair = whole.size() == 2 && alone(whole[0]) && alone(whole[1]);
     const auto task = [&](int each) { return problem_.tasks_of_unit(each).front(); };
@@ -116,7 +117,7 @@ void Placement::try_alone(int task) {
     ranges_[robot] = places(robot);
     count += std::max(0, ranges_[robot].second - ranges_[robot].first + 1);
   }
-  if (trial_->most_places > 0 && count > 2 * trial_->most_places) return try_near(task);
+  if (trial_->most_places > 0 && !trial_->append_only && count > 2 * trial_->most_places) return try_near(task);
   for (const int robot : robots) {
     if (!usable_alone(robot)) continue;
     for (int at = ranges_[robot].first; at <= ranges_[robot].second; ++at) try_place(robot, task, at);

@@ -45,6 +45,7 @@ class Placement {
   struct Walk {
     int robot, pickup, delivery, at, place;
     double time, pickup_begin, pickup_end, growth, late, takes;
+    double ride = 0.0;  // ways and work with the load on board, without waiting
   };
 
   bool alone(int unit) const;
@@ -67,6 +68,7 @@ class Placement {
   void try_transport_with(int robot, int pickup, int delivery);
   void try_pickup_at(int robot, int at, int pickup, int delivery);
   void keep_to_near_robots(int pickup, int delivery);
+  bool costs_too_much(const Walk& walk, double growth, double takes) const;
   bool room_for_transport(const Walk& walk, int at) const;
   bool pass_stop(Walk& walk, int at) const;
   void try_delivery_at(const Walk& walk, int at);
@@ -110,6 +112,7 @@ class Placement {
   bool seek_near(int unit);
   void stand_at_first_cut();
   void pass(int unit);
+  void pass_up_to(double label);
   bool renew_offers(int unit);
   bool offered(std::size_t candidate) const;
   void make_offers(int unit, std::size_t candidate);
@@ -172,7 +175,9 @@ class Placement {
   TeamChoice choice_;
   Rows teams_;
   std::vector<Cut> cuts_;
-  std::vector<char> near_;  // by unit, whether the cut behind it is tried where not all are
+  bool skips_cuts_ = false;      // whether some cuts alone are tried
+  std::vector<int> near_units_;  // behind which they are
+  std::vector<char> near_;       // by unit, the same while cuts are gathered
   std::vector<double> keys_, works_;
   std::vector<int> candidates_, at_, robots_;
   std::vector<int> candidate_of_;  // by robot; -1: it is none

@@ -119,6 +119,12 @@ bool Problem::find_symmetric() const {
   return true;
 }
 
+bool Problem::call_alike(int robot, int other) const {
+  const auto calls = [&](int own) { return data_.calls.begin() + static_cast<std::ptrdiff_t>(own) * stations(); };
+  return data_.calls.empty() || std::equal(calls(robot), calls(robot) + stations(), calls(other));
+}
+
+// Whether two robots may do the same tasks, and one way costs both the same.
 bool Problem::alike(int robot, int other) const {
   const auto same = [&](const auto& values) { return values.empty() || values[robot] == values[other]; };
   const auto same_loads = [&] {
@@ -131,7 +137,8 @@ bool Problem::alike(int robot, int other) const {
   };
   return same(data_.kind) && same(data_.work_class) && same(data_.time_class) && same(data_.travel_class) &&
          same(data_.place_class) && same(data_.speed) && same(data_.acceleration) && same(data_.climb) &&
-         same(data_.turn) && same(data_.waits) && same(data_.energy) && same(data_.energy_at_start) && same_loads();
+         same(data_.turn) && same(data_.waits) && same(data_.energy) && same(data_.energy_at_start) && same_loads() &&
+         call_alike(robot, other);
 }
 
 void Problem::check_times() const {
@@ -148,11 +155,12 @@ void Problem::check_times() const {
   const std::size_t abilities = tasks ? data_.needs.size() / tasks : 0;
   require(data_.needs.size() == abilities * tasks && data_.abilities.size() == abilities * robots,
           "abilities have the wrong size");
-  for (const Rows* relation : {&data_.same_crew, &data_.apart}) {
+  for (const Rows* relation : {&data_.exclusive, &data_.same_crew, &data_.apart}) {
     require(fits(relation->values.empty() ? 0 : static_cast<std::size_t>(relation->size()), tasks) &&
                 std::ranges::all_of(relation->values, [&](int j) { return 0 <= j && j < tasks_; }),
             "relations need a row for each task");
   }
+  require(fits(data_.calls.size(), robots * data_.stations.size()), "calls need a flag for each robot and station");
   const std::size_t kinds = tasks ? data_.allowed.size() / tasks : 0;
   for (const auto& row : data_.parts) {
     require(std::ranges::all_of(row, [&](const TeamPart& part) { return part.allowed.size() == kinds; }),
@@ -330,8 +338,8 @@ void Problem::find_units() {
   }
   timed_ = has_time_limits() || !data_.gap_least.empty() || !data_.gap_most.empty() || !data_.unit.empty() ||
            !data_.parts.empty() || !data_.needs.empty() || !data_.same_crew.values.empty() ||
-           !data_.apart.values.empty() || has_least_stops() || data_.meters > 0 || !data_.energy.empty() ||
-           data_.objective == Objective::lateness ||
+           !data_.apart.values.empty() || has_exclusive() || has_least_stops() || data_.meters > 0 ||
+           !data_.energy.empty() || data_.objective == Objective::lateness ||
            (data_.makespan_includes_return && data_.objective == Objective::makespan);
 }
 

@@ -78,6 +78,7 @@ struct ProblemData {
   std::vector<int> unit;                       // by task: its number of a node; tasks that start together share it
   std::vector<std::vector<TeamPart>> parts;    // by task
   std::vector<double> abilities, needs;        // robots x A, tasks x A
+  Rows exclusive;                              // symmetric: of two tasks at most one is done
   Rows same_crew, apart;                       // symmetric
   std::vector<double> acceleration, climb;     // by robot; inf: no limit
   std::vector<double> turn;                    // by robot: seconds of the turn with which a leg begins
@@ -93,6 +94,7 @@ struct ProblemData {
   // Energy: above what a energy must keep; inf: without a limit of energy. By robot.
   std::vector<double> energy, energy_at_start;
   std::vector<Station> stations;
+  std::vector<char> calls;  // robots x stations: whether a robot may call there; empty: everybody may
   // What is waited for others on the way between two places (places x places, seconds), by robots that share lanes;
   // empty: nothing.
   std::vector<double> waiting;
@@ -200,6 +202,11 @@ class Problem {
     if (data_.apart.size() == 0) return {};
     return data_.apart[task];
   }
+  std::span<const int> exclusive(int task) const {
+    if (data_.exclusive.size() == 0) return {};
+    return data_.exclusive[task];
+  }
+  bool has_exclusive() const { return data_.exclusive.size() > 0; }
   bool makespan_includes_return() const { return data_.makespan_includes_return; }
 
   int meters() const { return data_.meters; }
@@ -228,6 +235,10 @@ class Problem {
   bool delivers(int task) const { return !data_.pickup.empty() && data_.pickup[task] >= 0; }
   int stations() const { return static_cast<int>(data_.stations.size()); }
   const Station& station(int number) const { return data_.stations[number]; }
+  bool may_call(int robot, int station) const {
+    return data_.calls.empty() || data_.calls[static_cast<std::size_t>(robot) * stations() + station] != 0;
+  }
+  bool has_call_limits() const { return !data_.calls.empty(); }
   int place_of_station(int number) const { return tasks_ + 2 * robots_ + number; }
   // What a energy can hold, and holds at first, above its reserve; inf: without a limit of energy.
   double energy(int robot) const { return data_.energy.empty() ? kInfinity : data_.energy[robot]; }
@@ -252,6 +263,8 @@ class Problem {
   }
   // Whether the way from a task to another costs what the way back does, for every robot.
   bool is_symmetric() const { return symmetric_; }
+  // Whether a way through another task is never shorter, nor quicker: ways are straight and tasks end where they begin.
+  bool detours_cost() const { return symmetric_ && steady_ && !given_table_; }
   // The first robot that differs from this one in nothing: of those without tasks one stands for all.
   int twin(int robot) const { return twins_[robot]; }
   // Whether two robots may do the same tasks, and one way costs both the same.
@@ -316,6 +329,7 @@ class Problem {
   void find_inseparable();
   std::vector<int> in_order(std::vector<int> units) const;
   void find_twins();
+  bool call_alike(int robot, int other) const;
   bool same_ends(int robot, int other) const;
   void find_who_may_run_short();
   void check_goods() const;

@@ -58,6 +58,14 @@ bool Roster::ready(int unit) const {
   return is_ready(unit) && std::ranges::all_of(whole, is_ready);
 }
 
+bool Roster::barred(int unit) const {
+  if (!problem_.has_exclusive()) return false;
+  const auto there = [&](int other) { return present(problem_.unit(other)); };
+  const auto task_barred = [&](int task) { return std::ranges::any_of(problem_.exclusive(task), there); };
+  const auto is_barred = [&](int each) { return std::ranges::any_of(problem_.tasks_of_unit(each), task_barred); };
+  return is_barred(unit) || std::ranges::any_of(problem_.inseparable(unit), is_barred);
+}
+
 bool Roster::fixed(int unit) const {
   return has_fixed_ && std::ranges::any_of(timeline_.visits_of(unit), [&](int number) {
            const Visit& visit = timeline_.visit(number);
@@ -77,6 +85,7 @@ bool Roster::insert(const UnitInsertion& insertion) {
 }
 
 bool Roster::append(int unit, int robot) {
+  if (barred(unit)) return false;
   const int last = timeline_.tasks_in(robot);
   const Labels allowed = timeline_.labels_for(unit);
   const double low = std::max(allowed.low, timeline_.stop(robot, last).label);

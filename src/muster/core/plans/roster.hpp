@@ -61,6 +61,8 @@ class Roster {
   bool present(int unit) const { return timeline_.present(unit); }
   // Whether all that a unit waits for is present, what is inseparable from it aside.
   bool ready(int unit) const;
+  // Whether a task is present that excludes one of a unit, or of what is inseparable from it.
+  bool barred(int unit) const;
   // Whether a unit stays where it is.
   bool fixed(int unit) const;
   // The units that are in no route.

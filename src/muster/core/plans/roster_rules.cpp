@@ -175,7 +175,7 @@ bool Roster::keeps_rules() const {
   TeamChoice choice(problem_);
   for (int task = 0; task < problem_.tasks(); ++task) {
     const int unit = problem_.unit(task);
-    if (present(unit) && !(ready(unit) && has_rightful_team(task, choice))) return false;
+    if (present(unit) && (!ready(unit) || barred(unit) || !has_rightful_team(task, choice))) return false;
   }
   return true;
 }

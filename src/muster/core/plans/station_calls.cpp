@@ -303,15 +303,17 @@ const Frontier& StationCalls::after_work(const Labels& labels, int last) {
 
 // --- Stations --------------------------------------------------------------------------------------------------------
 
-bool StationCalls::serves(int robot, const Station& station) const {
-  return (problem_.energy(robot) < kNever && station.gives_energy()) || (unloads_ && station.unloads);
+bool StationCalls::serves(int robot, int number) const {
+  const Station& station = problem_.station(number);
+  const bool is_of_use = (problem_.energy(robot) < kNever && station.gives_energy()) || (unloads_ && station.unloads);
+  return is_of_use && problem_.may_call(robot, number);
 }
 
 // The least usage from a place to a station with energy.
 double StationCalls::least_onward(int robot, int from) const {
   double least = kNever;
   for (int k = 0; k < problem_.stations(); ++k) {
-    if (!problem_.station(k).gives_energy()) continue;
+    if (!problem_.station(k).gives_energy() || !problem_.may_call(robot, k)) continue;
     least = std::min(least, problem_.travel_usage(robot, from, problem_.place_of_station(k)));
   }
   return least;
@@ -321,8 +323,10 @@ double StationCalls::least_onward(int robot, int from) const {
 std::span<const int> StationCalls::stations_between(int robot, int from, int to) {
   const auto places = static_cast<std::uint64_t>(problem_.place_of_station(problem_.stations()));
   const bool energy = problem_.energy(robot) < kNever;
-  const auto key =
-      ((static_cast<std::uint64_t>(problem_.travel_class(robot)) * 2 + energy) * places + from) * places + to;
+  const auto robots = static_cast<std::uint64_t>(problem_.robots() + 1);
+  const auto who = static_cast<std::uint64_t>(problem_.has_call_limits() ? robot + 1 : 0);
+  const auto kind = (static_cast<std::uint64_t>(problem_.travel_class(robot)) * 2 + energy) * robots + who;
+  const auto key = (kind * places + from) * places + to;
   if (between_.size() > kMostRemembered) between_.clear();
   const auto [found, is_new] = between_.try_emplace(key);
   if (!is_new) return found->second;
@@ -341,11 +345,11 @@ std::span<const int> StationCalls::stations_between(int robot, int from, int to)
     return in < in_other || out < out_other || one.refill > other.refill || a < b;
   };
   for (int station = 0; station < problem_.stations(); ++station) {
-    if (!serves(robot, problem_.station(station))) continue;
+    if (!serves(robot, station)) continue;
     bool beaten = false;
     const bool keeps_all = has_few_ || problem_.has_queues();
     for (int other = 0; other < problem_.stations() && !beaten && !keeps_all; ++other) {
-      beaten = other != station && beats(other, station);
+      beaten = other != station && serves(robot, other) && beats(other, station);
     }
     if (!beaten) found->second.push_back(station);
   }

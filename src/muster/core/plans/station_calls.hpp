@@ -109,7 +109,7 @@ class StationCalls {
   static const Frontier& after_work(const Labels& labels, int last);
   bool ends_before_return(int robot) const;
   void trace(int robot, Route& route, int best, std::span<const double> works);
-  bool serves(int robot, const Station& station) const;
+  bool serves(int robot, int station) const;
 
   const Problem& problem_;
   bool in_time_, unloads_, has_few_;

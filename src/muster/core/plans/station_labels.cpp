@@ -67,7 +67,7 @@ void StationCalls::call_again(int robot, Labels& labels, int to, double beyond) 
     const double rest = problem_.travel_usage(robot, place, to) + beyond;
     if (!runs_short(robot, labels, labels.all[parent], rest)) continue;
     for (int station = 0; station < problem_.stations(); ++station) {
-      if (station == last || !serves(robot, problem_.station(station))) continue;
+      if (station == last || !serves(robot, station)) continue;
       const int called = call(robot, labels, parent, place, station);
       if (called >= 0) deeper_.push_back(called);
     }

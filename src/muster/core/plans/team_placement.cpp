@@ -9,7 +9,8 @@ namespace muster {
 
 namespace {
 
-constexpr double kFirstKey = 0.5;  // how often an algorithm with random numbers takes the first
+constexpr std::size_t kPassedAtOnce = 4;  // robots that are looked at in the time in which a unit is passed
+constexpr double kFirstKey = 0.5;         // how often an algorithm with random numbers takes the first
 
 }  // namespace
 
@@ -43,7 +44,11 @@ template <class Try>
 void Placement::walk_cuts(int unit, Try&& attempt) {
   stand_at_first_cut();
   for (const Cut& cut : cuts_) {
-    if (cut.behind >= 0) pass(cut.behind);
+    if (skips_cuts_) {
+      pass_up_to(cut.label);
+    } else if (cut.behind >= 0) {
+      pass(cut.behind);
+    }
     if (cut.tried && renew_offers(unit) && !overlooked()) attempt();
   }
 }
@@ -76,30 +81,39 @@ void Placement::try_key(int unit, int key, std::size_t first) {
   }
 }
 
-// All cuts between what comes before the unit and what comes after it, in order.
+// The cuts between what comes before the unit and what comes after it, in order: all, or some of many.
 void Placement::gather_cuts(int unit) {
-  const bool all = !trial_->append_only && !seek_near(unit);
-  cuts_.assign(1, {labels_.low, -1, !trial_->append_only});
-  for (int other = 0; other < problem_.units(); ++other) {
+  cuts_.assign(1, {labels_.low, -1, true});
+  skips_cuts_ = trial_->append_only;
+  if (trial_->append_only) return;  // behind all that may come before the unit
+  const bool some = seek_near(unit);
+  // To pass many cuts one by one takes longer than to look at each robot at some.
+  skips_cuts_ = some && near_units_.size() * candidates_.size() < kPassedAtOnce * near_.size();
+  const auto add = [&](int other, bool tried) {
     const double label = timeline_.label_of(other);
-    if (!timeline_.present(other) || label <= labels_.low || label >= labels_.high) continue;
-    cuts_.push_back({label, other, all || near_[other]});
+    if (timeline_.present(other) && label > labels_.low && label < labels_.high) cuts_.push_back({label, other, tried});
+  };
+  if (skips_cuts_) {
+    for (const int other : near_units_) add(other, true);
+  } else {
+    for (const int other : near_units_) near_[other] = 1;
+    for (int other = 0; other < problem_.units(); ++other) add(other, !some || near_[other]);
+    for (const int other : near_units_) near_[other] = 0;
   }
   std::ranges::sort(cuts_, {}, &Cut::label);
-  if (trial_->append_only) cuts_.back().tried = true;
   for (std::size_t k = 1; k < cuts_.size(); ++k) {  // there is no cut between units of one label
     if (cuts_[k - 1].label == cuts_[k].label) cuts_[k].tried |= std::exchange(cuts_[k - 1].tried, false);
   }
 }
 
-// Marks the units behind and before those near ones, and the last of each route. False: all cuts are few enough.
+// Finds the units behind and before those near ones, and the last of each route. False: all cuts are few enough.
 bool Placement::seek_near(int unit) {
+  near_units_.clear();
   long count = 0;
   for (const int robot : candidates_) count += timeline_.tasks_in(robot);
   if (trial_->most_places == 0 || count <= 4 * trial_->most_places) return false;
-  std::ranges::fill(near_, 0);
   const auto mark = [&](const Visit& visit) {
-    if (visit.unit >= 0) near_[visit.unit] = 1;
+    if (visit.unit >= 0) near_units_.push_back(visit.unit);
   };
   for (const int task : problem_.tasks_of_unit(unit)) {
     int tried = 0;
@@ -122,8 +136,11 @@ void Placement::stand_at_first_cut() {
   passed_.resize(candidates_.size());
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const auto& route = timeline_.route(candidates_[c]);
-    const auto later = [&](int number) { return timeline_.visit(number).label > labels_.low; };
-    at_[c] = static_cast<int>(std::find_if(route.begin() + 1, route.end() - 1, later) - route.begin()) - 1;
+    const auto before = [&](int number) {
+      const double label = timeline_.visit(number).label;
+      return trial_->append_only ? label < labels_.high : label <= labels_.low;
+    };
+    at_[c] = static_cast<int>(std::partition_point(route.begin() + 1, route.end() - 1, before) - route.begin()) - 1;
     candidate_of_[candidates_[c]] = passed_[c] = static_cast<int>(c);
   }
 }
@@ -136,6 +153,15 @@ void Placement::pass(int unit) {
     if (candidate < 0) continue;
     at_[candidate] = visit.at;
     passed_.push_back(candidate);
+  }
+}
+
+// Moves the places of all robots behind everything up to a label.
+void Placement::pass_up_to(double label) {
+  for (std::size_t c = 0; c < candidates_.size(); ++c) {
+    const int robot = candidates_[c], before = at_[c], size = timeline_.tasks_in(robot);
+    while (at_[c] < size && timeline_.stop(robot, at_[c] + 1).label <= label) ++at_[c];
+    if (at_[c] != before) passed_.push_back(static_cast<int>(c));
   }
 }
 

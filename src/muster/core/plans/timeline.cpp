@@ -278,6 +278,8 @@ void Timeline::commit() {
   free_.insert(free_.end(), taken_.begin(), taken_.end());
   taken_.clear();
   changes_.clear();
+  committed_.clear();
+  for (const Times& times : times_) committed_.push_back(times.unit);
   times_.clear();
   ++step_;
   if (static_cast<double>(unsorted_) > 1.0 + kPlacementsPerUnit * static_cast<double>(nodes_.size())) relabel();

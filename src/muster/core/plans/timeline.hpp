@@ -117,6 +117,10 @@ class Timeline {
 
   void commit();
   void rollback();
+  // The units whose times the last `commit` may have changed.
+  std::span<const int> committed() const { return committed_; }
+  // How many times labels were put in order of time.
+  int relabelings() const { return relabelings_; }
 
  private:
   // Between a task and one that has to wait for it, as one of the two units sees it.
@@ -216,6 +220,8 @@ class Timeline {
   std::vector<Change> changes_;
   std::vector<int> taken_;
   std::vector<Times> times_;
+  std::vector<int> committed_;
+  int relabelings_ = 0;
   std::size_t unsorted_ = 0;  // units placed since labels were in order of time
   // Of `seek_labels`.
   int stamp_ = 0;

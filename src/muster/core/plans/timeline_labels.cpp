@@ -76,6 +76,7 @@ void Timeline::relabel() {
   for (const int unit : units) labels.push_back(&nodes_[unit].label);
   spread(labels);
   unsorted_ = 0;
+  ++relabelings_;
 }
 
 void Timeline::set_label(int unit, double label) {

@@ -21,6 +21,7 @@ bool Timeline::settle() {
 
 bool Timeline::settle_begins() {
   if (has_gap_most_ && !(forward_.empty() && backward_.empty())) return settle_cycles();
+  if (forward_.empty()) return true;
   renew_budget();
   return forward();
 }
@@ -154,6 +155,7 @@ bool Timeline::forward() {
 // rise: the propagation ends with its budget then. What it leaves is too late at worst, so that nothing is rejected by
 // it that begins do not reject.
 void Timeline::backward() {
+  if (backward_.empty()) return;
   renew_budget();
   while (!backward_.empty()) {
     const int unit = backward_.pop();

@@ -98,13 +98,35 @@ void Placement::try_pickup_at(int robot, int at, int pickup, int delivery) {
   const double then =
       goes_on ? problem_.travel_usage(robot, pickup, next.place) - problem_.travel_usage(robot, last.place, next.place)
               : 0.0;
-  const bool total = problem_.objective() == Objective::total;
+  const auto leg = [&](int from, int to) { return goes_on ? problem_.travel_time(robot, from, to) : 0.0; };
+  const double then_s =
+      problem_.objective() == Objective::makespan ? leg(pickup, next.place) - leg(last.place, next.place) : 0.0;
   for (int second_at = at;; ++second_at) {
     if (timeline_.stop(robot, second_at).label >= second_labels_.high) return;
     if (timeline_.stop(robot, second_at + 1).label > second_labels_.low) try_delivery_at(walk, second_at);
-    if (second_at == size || (total && !may_call(robot) && walk.growth + then >= best_.score)) return;
+    if (second_at == size || costs_too_much(walk, walk.growth + then, walk.takes + then_s)) return;
     if (!pass_stop(walk, second_at + 1)) return;
   }
+}
+
+// Whether a transport whose pickup alone takes so much costs no less than the best that is known, wherever it is
+// delivered.
+bool Placement::costs_too_much(const Walk& walk, double growth, double takes) const {
+  if (may_call(walk.robot)) return false;
+  switch (problem_.objective()) {
+    case Objective::total:
+      return growth >= best_.score;
+    case Objective::total_max:
+      return problem_.detours_cost() && growth >= best_.score;
+    case Objective::max:
+    case Objective::lateness:
+      return problem_.detours_cost() && InsertionScore::kTie * growth >= best_.score;
+    case Objective::makespan:
+      return problem_.detours_cost() && InsertionScore::kTaken * takes >= best_.score;
+    case Objective::average:
+      return false;
+  }
+  return false;
 }
 
 bool Placement::room_for_transport(const Walk& walk, int at) const {
@@ -124,6 +146,7 @@ bool Placement::pass_stop(Walk& walk, int at) const {
   if (!may_call(walk.robot)) begin = std::max(begin, timeline_.begin_of(visit.unit));
   if (!timeline_.in_time(begin, latest_begin(walk.robot, at)) || !room_for_transport(walk, at)) return false;
   walk.time = begin + timeline_.work_of(visit.place);
+  walk.ride += problem_.travel_time(walk.robot, walk.place, visit.place) + timeline_.work_of(visit.place);
   if (problem_.objective() == Objective::lateness) {
     walk.late += lateness(visit.place, walk.time) - lateness(visit.place, visit.leave);
   }
@@ -149,8 +172,7 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
   if (!timeline_.in_time(begin, second_latest_)) return;
   // A pick-up that would end too long before its delivery begins later, if it may.
   const double later = std::max(0.0, begin - walk.pickup_end - within_);
-  if (later > 0.0 && (!timeline_.in_time(walk.pickup_begin + later, latest_) || (at == walk.at && in > within_)))
-    return;
+  if (later > 0.0 && (!timeline_.in_time(walk.pickup_begin + later, latest_) || walk.ride + in > within_)) return;
   if (!timeline_.in_time(begin + work + out, latest_begin(robot, at + 1))) return;
   const bool beside = at == walk.at, empty = timeline_.tasks_in(robot) == 0;
   double growth = walk.growth + problem_.travel_usage(robot, walk.place, delivery) +

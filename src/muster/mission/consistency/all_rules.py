@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import chain
 
 from muster.mission.areas.task_areas import area_faults
 from muster.mission.consistency.deliveries import goods_faults
@@ -11,7 +12,9 @@ from muster.mission.doors import doors_of
 from muster.mission.mission_data import MissionData
 from muster.mission.mission_parts import all_robots, all_work, positions, robots_that_join, rules_of_tags, unknown_id
 from muster.mission.site import Point
+from muster.mission.stations import Station
 from muster.mission.task_relations import relation_faults
+from muster.mission.tasks import Work
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import Fault, Path, shown
 
@@ -63,8 +66,10 @@ def _ids_of_stations(mission: MissionData) -> Iterator[Fault]:
 def _locks(mission: MissionData) -> Iterator[Fault]:
     ids = [r.id for r in mission.robots]
     known = {*ids, *(robot.id for _, robot in robots_that_join(mission))}
-    for path, task in all_work(mission):
-        for r, name in enumerate(task.only_robots or ()):
+    stations = ((("stations", k), station) for k, station in enumerate(mission.stations))
+    locked: Iterable[tuple[Path, Work | Station]] = chain(all_work(mission), stations)
+    for path, place in locked:
+        for r, name in enumerate(place.only_robots or ()):
             if name not in known:
                 yield unknown_id((*path, "only_robots", r), name, ids, "robot")
 

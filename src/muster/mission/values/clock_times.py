@@ -1,10 +1,10 @@
 """Converts clock times in a mission file to seconds from its start, before the mission is read.
 
 A task may have `window`, `deadline` and `due` in place of `window_s`, `deadline_s` and `due_s`, a robot `shift` in
-place of `available_from_s` and `available_until_s`. A clock time ("10:00") is in the zone of `starts_at`; one that is
-earlier is the next day's, and the second time of a pair is the first such after the first; "24:00" is the end of a
-day. A full date and time by ISO 8601 may stand in its place; a window or shift that began before the start begins at
-the start.
+place of `available_from_s` and `available_until_s`, or of `shifts_s`. A clock time ("10:00") is in the zone of
+`starts_at`; one that is earlier is the next day's, and the second time of a pair is the first such after the first;
+"24:00" is the end of a day. A full date and time by ISO 8601 may stand in its place; a window or shift that began
+before the start begins at the start.
 """
 
 from __future__ import annotations
@@ -40,15 +40,10 @@ class ClockTime:
 
 @dataclass(frozen=True)
 class ClockPairs:
-    """`["10:00", "14:00"]`, or with `several` a list of such pairs too; null where an end is open."""
+    """`["10:00", "14:00"]`, or a list of such pairs; null where an end is open."""
 
-    several: bool
     filler: ClassVar[None] = None
-
-    @property
-    def expected(self) -> str:
-        lists = ", or a list of such pairs" if self.several else ""
-        return f'["10:00", "14:00"]{lists}, each {_A_TIME}; null where an end is open'
+    expected: ClassVar[str] = f'["10:00", "14:00"], or a list of such pairs, each {_A_TIME}; null where an end is open'
 
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         pairs = self.pairs(value)
@@ -58,12 +53,11 @@ class ClockPairs:
         """The pairs in a value; None where it is none and no list of pairs."""
         if isinstance(value, str) or not isinstance(value, Sequence):
             return None
-        pairs = [value] if is_pair(value) or not self.several else list(value)
+        pairs = [value] if is_pair(value) else list(value)
         return pairs if pairs and all(map(_is_pair_of_times, pairs)) else None
 
     def schema(self) -> JsonSchema:
-        schema = pair_or_pairs(_TEXT)
-        return schema if self.several else dict(schema["anyOf"][0])
+        return pair_or_pairs(_TEXT)
 
 
 def _is_time(value: object) -> bool:
@@ -76,13 +70,13 @@ def _is_pair_of_times(pair: object) -> bool:
     return all(end is None or _is_time(end) for end in pair)
 
 
-WINDOW = ("window", ClockPairs(several=True), "in place of window_s: clock times, beside starts_at")
+WINDOW = ("window", ClockPairs(), "in place of window_s: clock times, beside starts_at")
 DEADLINE = ("deadline", ClockTime(), "in place of deadline_s: a clock time, beside starts_at")
 DUE = ("due", ClockTime(), "in place of due_s: a clock time, beside starts_at")
 SHIFT = (
     "shift",
-    ClockPairs(several=False),
-    "in place of available_from_s and available_until_s: clock times, beside starts_at",
+    ClockPairs(),
+    "in place of available_from_s and available_until_s, or of shifts_s: clock times, beside starts_at",
 )
 
 _KEYS_OF_TASKS = frozenset(key for key, _, _ in (WINDOW, DEADLINE, DUE))
@@ -99,10 +93,12 @@ def clock_times_to_seconds(data: object, faults: list[Fault]) -> None:
                 task[seconds] = clock.seconds(kind, task.pop(key), (*at, key))
     for at, robot in robots_in(data):
         keys = ("available_from_s", "available_until_s")
-        if _stands_alone(robot, "shift", keys, at, faults):
-            shift = clock.seconds(SHIFT[1], robot.pop("shift"), (*at, "shift"))
-            values = (INVALID, INVALID) if shift is INVALID else shift[0]
-            robot.update(zip(keys, values, strict=True))
+        if _stands_alone(robot, "shift", (*keys, "shifts_s"), at, faults):
+            shifts = clock.seconds(SHIFT[1], robot.pop("shift"), (*at, "shift"))
+            if shifts is not INVALID and len(shifts) > 1:
+                robot["shifts_s"] = shifts
+            else:
+                robot.update(zip(keys, (INVALID, INVALID) if shifts is INVALID else shifts[0], strict=True))
 
 
 def _stands_alone(record: dict[str, Any], key: str, others: Sequence[str], at: Path, faults: list[Fault]) -> bool:

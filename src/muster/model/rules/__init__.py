@@ -7,10 +7,12 @@ phrases are loops over these. What a search has to know of a rule in its hot loo
 
 from __future__ import annotations
 
+from muster.model.rules.aboard import Aboard
 from muster.model.rules.action import Action
 from muster.model.rules.battery import Battery
 from muster.model.rules.capacity import Capacity
 from muster.model.rules.deadline import Deadline
+from muster.model.rules.either_or import EitherOr
 from muster.model.rules.load import Load
 from muster.model.rules.lock import Lock
 from muster.model.rules.min_tasks import MinTasks
@@ -31,7 +33,9 @@ RULES: tuple[Rule, ...] = (
     Action(),
     Suitability(),
     Lock(),
+    EitherOr(),
     Load(),
+    Aboard(),
     Prerequisite(),
     Unreachable(),
     Window(),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -65,13 +65,11 @@ class Load(Rule):
             parts.meter(_meter(problem, name, parts.taken_on_by))
 
     def of_robot(self, problem: Question, i: int) -> Hashable:
-        robot = problem.robots[i]
-        return tuple((name, room_for(robot, name), _at_start(robot).get(name, 0.0)) for name in commodities(problem))
+        return _carries(problem.robots[i], commodities(problem))
 
     def kinds(self, problem: Question) -> list[Hashable] | None:
-        if not commodities(problem):
-            return None
-        return [self.of_robot(problem, i) for i in range(len(problem.robots))]
+        names = commodities(problem)
+        return [_carries(robot, names) for robot in problem.robots] if names else None
 
     def refusal(self, problem: Question, i: int, j: int) -> str | None:
         lacking = _too_much(problem, problem.robots[i], problem.tasks[j])
@@ -110,6 +108,11 @@ class Load(Rule):
             return None
         needed = {name: load for name, load in by_commodity(task.load).items() if load > room_for(robot, name)}
         return MoreRoom(needed) if needed else None
+
+
+def _carries(robot: Robot, names: Sequence[str]) -> Hashable:
+    """What makes a robot the same as another for loads of these commodities."""
+    return tuple((name, room_for(robot, name), _at_start(robot).get(name, 0.0)) for name in names)
 
 
 def commodities(problem: Question) -> list[str]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from muster.mission.model import Robot, Task
+from muster.model.parts import Parts
 from muster.model.rules.rule import Change, Question, Rule, listed
 
 
@@ -41,6 +42,12 @@ class Lock(Rule):
     word: ClassVar[str] = "lock"
     ignorable = False
     key = "lock"
+
+    def compile(self, problem: Question, parts: Parts) -> None:
+        for k, station in enumerate(problem.mission.stations):
+            for i, robot in enumerate(problem.robots):
+                if station.only_robots is not None and robot.id not in station.only_robots:
+                    parts.keep_away(i, k)
 
     def kinds(self, problem: Question) -> Sequence[Hashable]:
         locked = {name for task in problem.tasks for name in task.only_robots or ()}

@@ -54,7 +54,7 @@ class Prerequisite(Rule):
         return f"{outlook.lost_before} comes before it and can never be done"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
-        missing = [plan.problem.tasks[k].id for k in plan.problem.model.stated[j] if k not in plan.done]
+        missing = [plan.problem.tasks[k].id for k in plan.problem.prerequisites[j] if k not in plan.done]
         if missing:
             return f"left out before it: {listed(missing)}"
         if plan.is_timed:

@@ -1,4 +1,4 @@
-"""The rules of the judge, one a file. A new rule is registered here.
+"""The rules of the judge, one a file. A file in this folder that has a rule is all that a new rule needs here.
 
 A rule finds what is wrong with a route, and says whether it keeps a robot from one more task. The judge asks the latter
 of the reasons that a plan gives for tasks left out. Which limits of times are broken, and that routes and prerequisites
@@ -8,27 +8,14 @@ wait for each other in a cycle, is found by `schedule`, which all routes enter a
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib import import_module
+from inspect import isabstract
+from pkgutil import iter_modules
 from typing import Protocol
 
 from muster.mission.model import Task
 from muster.verification.case import Case
 from muster.verification.measure import MeasuredRoute
-from muster.verification.rules.action import Action
-from muster.verification.rules.battery import Battery
-from muster.verification.rules.capacity import Capacity
-from muster.verification.rules.closed_area import ClosedArea
-from muster.verification.rules.deadline import Deadline
-from muster.verification.rules.load import Load
-from muster.verification.rules.lock import Lock
-from muster.verification.rules.min_tasks import MinTasks
-from muster.verification.rules.prerequisite import Prerequisite
-from muster.verification.rules.relation import Relation
-from muster.verification.rules.shift import Shift
-from muster.verification.rules.skill import Skill
-from muster.verification.rules.suitability import Suitability
-from muster.verification.rules.team import Team
-from muster.verification.rules.unreachable import Unreachable
-from muster.verification.rules.window import Window
 from muster.verification.verdict import Violation
 
 
@@ -54,24 +41,25 @@ class Rule(Protocol):
         ...
 
 
-RULES: tuple[Rule, ...] = (
-    Skill(),
-    Action(),
-    Suitability(),
-    Lock(),
-    Team(),
-    Relation(),
-    Prerequisite(),
-    ClosedArea(),
-    Unreachable(),
-    Capacity(),
-    Load(),
-    Battery(),
-    Window(),
-    Deadline(),
-    Shift(),
-    MinTasks(),
+_FIRST = (
+    *("skill", "action", "suitability", "lock", "team", "relation", "prerequisite", "closed_area"),
+    *("unreachable", "capacity", "load", "battery", "window", "deadline", "shift"),
 )
+"""The files of the rules whose violations are listed first; those of all others follow by name."""
+
+
+def _found() -> Iterator[Rule]:
+    """The rules in the files of this folder: classes that say what is wrong with a route."""
+    names = sorted(module.name for module in iter_modules(__path__))
+    for name in sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST)):
+        module = import_module(f"{__name__}.{name}")
+        for made in vars(module).values():
+            is_own = isinstance(made, type) and made.__module__ == module.__name__
+            if is_own and hasattr(made, "violations") and not isabstract(made):
+                yield made()
+
+
+RULES: tuple[Rule, ...] = tuple(_found())
 
 
 def rules_that_hold(case: Case) -> list[Rule]:
