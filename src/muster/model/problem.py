@@ -192,10 +192,10 @@ class Problem:
     @cached_property
     def prerequisites(self) -> list[list[int]]:
         """For each task those before it, but one that is so only as it takes on what the task delivers."""
-        found = zip(self.tasks, self.model.awaited, self.model.pickups, strict=True)
+        pairs = zip(self.model.awaited, self.model.pickups, strict=True)
         return [
-            [k for k in before if k != pickup or self.tasks[k].id in task.prerequisites]
-            for task, before, pickup in found
+            [k for k in before if k != pickup or self.tasks[k].id in self.tasks[j].prerequisites]
+            for j, (before, pickup) in enumerate(pairs)
         ]
 
     def with_partner(self, j: int) -> tuple[int, ...]:
