@@ -37,15 +37,15 @@ class Times:
         self.end = [self._model.new_int_var(0, longest, "") for _ in circuits.tasks]
         self._follow_routes()
         self._follow_prerequisites()
-        self._keep_windows()
-        self._keep_shifts()
+        self._keep_openings()
+        self._keep_ends()
 
     def _latest_base(self) -> float:
         """No time is later than this by more than travel and work of all tasks: the latest that all begins from."""
         rules = self._rules
-        opens = (window[0] for windows in rules.openings for window in windows)
-        lags = sum(after for j in self._circuits.tasks for _, after, _ in rules.gaps(j))
-        return float(max(chain(self.available, opens))) + lags
+        opens = (begin for spans in rules.openings for begin, _ in spans)
+        gaps = sum(after for j in self._circuits.tasks for _, after, _ in rules.gaps(j))
+        return float(max(chain(self.available, opens))) + gaps
 
     def _follow_routes(self) -> None:
         circuits, model = self._circuits, self._model
@@ -76,7 +76,7 @@ class Times:
         self._model.add_max_equality(slowest, work)
         return slowest
 
-    def _keep_windows(self) -> None:
+    def _keep_openings(self) -> None:
         rules, model = self._rules, self._model
         for j in self._circuits.tasks:
             done = self._circuits.done[j]
@@ -87,7 +87,7 @@ class Times:
                 allowed = cp_model.Domain.from_intervals([span for span in spans if span[0] <= span[1]])
                 model.add_linear_expression_in_domain(self.begin[j], allowed).only_enforce_if(done)
 
-    def _keep_shifts(self) -> None:
+    def _keep_ends(self) -> None:
         for (i, j, end), leg in self._circuits.homeward():
             until = self._rules.over_by[i]
             if math.isfinite(until):
