@@ -211,8 +211,9 @@ def test_a_teams_work_counts_for_each_member_as_long_as_for_the_slowest():
 def test_work_that_is_more_than_all_capacities_or_batteries(keys, resource, available):
     tasks = tuple(Task(id=str(k), position=(0, 0), actuation_cost=4) for k in range(5))
     problem = Problem.compile(Mission(robots=robots_with(**keys), tasks=tasks))
-    found = {short.resource: short for short in shortfalls(problem, range(5))}
-    assert (found[resource].needed, found[resource].available) == pytest.approx((20, available))
+    (short,) = shortfalls(problem, range(5))
+    assert short.resource == resource
+    assert (short.needed, short.available) == pytest.approx((20, available))
 
 
 def test_work_that_must_be_over_by_the_last_deadline():

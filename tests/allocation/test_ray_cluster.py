@@ -138,7 +138,7 @@ def used_s(process):
 @contextmanager
 def once(both_work, act, monkeypatch):
     """Act while both nodes work on a part, or after two minutes; not if the block ends before. Workers may be slow."""
-    monkeypatch.setattr("muster.allocation.search.ray_cluster._RETURNED_WITHIN_S", 60.0)
+    monkeypatch.setattr("muster.allocation.search.ray_cluster._LONGEST_TO_RETURN_S", 60.0)
     over, until = threading.Event(), time.monotonic() + 120
 
     def wait():
@@ -308,7 +308,7 @@ def test_addresses_where_no_cluster_is(address, why):
 
 
 def test_something_else_answers(monkeypatch):
-    monkeypatch.setattr("muster.allocation.search.ray_cluster._ANSWERED_WITHIN_S", 2.0)
+    monkeypatch.setattr("muster.allocation.search.ray_cluster._LONGEST_TO_ANSWER_S", 2.0)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"127.0.0.1:{silent.getsockname()[1]}"
         with pytest.raises(ParameterError, match="what is there is not the head of a Ray cluster"):

@@ -97,7 +97,7 @@ def test_published_instances_are_missions(name, robots):
     assert (mission.robots[0].battery is not None) == ("10" in name and not name.startswith("l"))
     problem = Problem.compile(mission).ready()
     assert impossible(problem) == ()
-    assert (sum(partner is not None for partner in problem.partners) > 100) == name.startswith("l")
+    assert (sum(partner is not None for partner in problem.model.partners) > 100) == name.startswith("l")
 
 
 @pytest.mark.parametrize(("name", "robots"), [("c101C5", 2), ("r105C5", 2)])

@@ -221,12 +221,11 @@ def _stops(problem: Problem, inspection: core.Inspection) -> list[tuple[RouteSto
     return [tuple(_stop(problem, *stop) for stop in row) for row in stops]
 
 
-def _stop(problem: Problem, place: int, arrive_s: float, begin_s: float, end_s: float, charged: float) -> RouteStop:
+def _stop(problem: Problem, place: int, arrive_s: float, begin_s: float, end_s: float, filled: float) -> RouteStop:
     if place < len(problem.tasks):
         return RouteStop(problem.tasks[place].id, arrive_s, begin_s, end_s)
     station = problem.stations[place - len(problem.tasks) - 2 * len(problem.robots)]
-    amount = charged if station.charges else None
-    return RouteStop(station.id, arrive_s, begin_s, end_s, is_station=True, charged=amount)
+    return RouteStop.at_station(station, arrive_s, begin_s, end_s, filled)
 
 
 def equality_index(usages: Sequence[float]) -> float:

@@ -9,14 +9,15 @@ import math
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from functools import reduce
 
 from muster import core
 from muster.allocation.allocator import Routes, admissible_routes
 from muster.mission.model import Task
 from muster.mission.plan import Plan
 from muster.model.problem import Problem
+from muster.model.rules import all_rules
 from muster.model.rules.rule import ROUNDING
-from muster.model.rules.shift import with_end
 
 
 def with_fixed_routes(problem: Problem, plan: Plan) -> Problem:
@@ -41,8 +42,8 @@ def admissible_alone(problem: Problem, i: int, route: Sequence[int]) -> bool:
 def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:
     """The same problem for plans whose routes begin with what robots have done or begun, be it admissible or not.
 
-    Tasks done or begun have no prerequisites here, no times, and the robots that did them. The capacity of a robot that
-    has used more than its capacity is what it has used, and its shift ends no earlier than all that was done. A robot
+    Of tasks done or begun nothing holds here but who did them, see `Rule.begun`. The capacity of a robot that has used
+    more than its capacity is what it has used, and it can be at work until all that was done is over. A robot
     whose past has a leg without a path is taken to be at its start; no task waits for its past.
     """
     free = _as_begun(problem, past)
@@ -56,56 +57,39 @@ def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:
     )
     lost = {problem.tasks[j].id for route, usage in zip(past, usages, strict=True) if math.isinf(usage) for j in route}
     if robots == problem.robots and not lost:
-        return _within_shifts(kept)
+        return _outlasting(kept)
     bearable = replace(
         kept,
         robots=robots,
         tasks=tuple(t.waiting_for(p for p in t.prerequisites if p not in lost) for t in free),
         fixed=tuple(() if math.isinf(usage) else tuple(route) for route, usage in zip(past, usages, strict=True)),
     )
-    return _within_shifts(bearable)
+    return _outlasting(bearable)
 
 
 def _as_begun(problem: Problem, past: Sequence[Sequence[int]]) -> tuple[Task, ...]:
     """The tasks; those done or begun without what said when they begin, and who does them."""
-    robots = Counter(j for route in past for j in set(route))
-    names = {problem.tasks[j].id for j in robots}
-
-    def freed(j: int, task: Task) -> Task:
-        if j not in robots:
-            return replace(task, starts_with=tuple(name for name in task.starts_with if name not in names))
-        return replace(
-            task.waiting_for(()),
-            window_s=(),
-            deadline_s=None,
-            robots_needed=robots[j] if task.is_for_team else task.robots_needed,
-            team=(),
-            needs=None,
-            same_robot_as=tuple(name for name in task.same_robot_as if name not in names),
-            other_robot_than=tuple(name for name in task.other_robot_than if name not in names),
-            starts_with=(),
-        )
-
-    return tuple(freed(j, task) for j, task in enumerate(problem.tasks))
+    begun = Counter(problem.tasks[j].id for route in past for j in set(route))
+    return tuple(reduce(lambda free, rule: rule.begun(free, begun), all_rules(), task) for task in problem.tasks)
 
 
-def _within_shifts(problem: Problem) -> Problem:
-    """The problem with shifts that end no earlier than the fixed tasks, if these end too late for some."""
-    limited = problem.holds("shift") and any(robot.available_until_s is not None for robot in problem.robots)
+def _outlasting(problem: Problem) -> Problem:
+    """The problem with robots that can be at work until the fixed tasks are over, if these are so too late for some."""
     fixed = [list(route) for route in problem.fixed]
-    if not limited or core.Inspection(problem.core, fixed).admissible:
+    if not problem.model.parts.over_by or core.Inspection(problem.core, fixed).admissible:
         return problem
     rules = replace(problem.mission.rules, objective="makespan", makespan_includes_return=True)
-    robots = tuple(with_end(robot, None) for robot in problem.robots)
-    endless = replace(problem, mission=replace(problem.mission, rules=rules), robots=robots)
+    endless = _at_work(replace(problem, mission=replace(problem.mission, rules=rules)), None)
     end_s = core.Inspection(endless.core, fixed).makespan
     if end_s is None:
         return problem
-    longer = tuple(
-        robot if robot.available_until_s is None else with_end(robot, max(robot.available_until_s, end_s))
-        for robot in problem.robots
-    )
-    return replace(problem, robots=longer)
+    return _at_work(problem, end_s)
+
+
+def _at_work(problem: Problem, end_s: float | None) -> Problem:
+    """The problem with robots that can be at work until a time; None: however long."""
+    robots = (reduce(lambda one, rule: rule.outlasting(one, end_s), problem.rules, robot) for robot in problem.robots)
+    return replace(problem, robots=tuple(robots))
 
 
 def admissible_part(problem: Problem, routes: Routes) -> Routes:

@@ -818,7 +818,7 @@ class CrowdWorld:
         What robots that something else moves are to do in the next step: for each its velocity x, y, z, speed ahead of one that faces its way, yaw rate.
         """
 
-    def carried_out(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], lags: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], counted: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], still: float) -> list[tuple[float, int, int, int, bool]]:
+    def carried_out(self, poses: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], short_of: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], counted: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], still: float) -> list[tuple[float, int, int, int, bool]]:
         """
         Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they told to stand; (n, 2) metres and radians that their wheels counted, NaN without wheels; slower than `still` is standing. Returns events as `advance`.
         """

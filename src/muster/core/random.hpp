@@ -20,12 +20,12 @@ class Random {
 
   std::uint64_t next() {
     const std::uint64_t result = rotate(state_[0] + state_[3], 23) + state_[0];
-    const std::uint64_t shifted = state_[1] << 17;
+    const std::uint64_t moved = state_[1] << 17;
     state_[2] ^= state_[0];
     state_[3] ^= state_[1];
     state_[1] ^= state_[2];
     state_[0] ^= state_[3];
-    state_[2] ^= shifted;
+    state_[2] ^= moved;
     state_[3] = rotate(state_[3], 45);
     return result;
   }

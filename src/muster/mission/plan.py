@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from muster.mission.auction_book import Book
 from muster.mission.errors import CutShortError
 from muster.mission.ignorable_rules import IGNORABLE, ignored_rules
-from muster.mission.stations import station_sign
+from muster.mission.stations import Station, station_sign
 from muster.mission.tables import data_frame, html_line, html_table
 from muster.mission.texts.text_files import write_text
 
@@ -39,6 +39,17 @@ class RouteStop:
     end_s: float
     is_station: bool = False
     charged: float | None = None
+
+    @classmethod
+    def at_station(cls, station: Station, arrive_s: float, begin_s: float, end_s: float, filled: float) -> RouteStop:
+        """A call at a station that adds so much."""
+        charged = filled if station.charges else None
+        return cls(station.id, arrive_s, begin_s, end_s, is_station=True, charged=charged)
+
+    @property
+    def said_of_station(self) -> str:
+        """What a robot does at a station."""
+        return "a call" if self.charged is None else "a charge"
 
     @property
     def task(self) -> str | None:

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.model import Station
 from muster.mission.values.arrays import Bools, Floats
-from muster.model.parts import Meter
+from muster.model.parts import Meter, Service
 from muster.model.plan_model import PlanModel
 from muster.model.rules import Question
 from muster.motion.leg_times import LegTimes
@@ -34,8 +33,8 @@ def core_arrays(problem: Question, profiles: Sequence[LegTimes]) -> dict[str, An
         **_meters(model),
         "energy": model.energy if model.parts.energy else _NONE,
         "energy_at_start": model.energy_at_start if model.parts.energy else _NONE,
-        "stations": [_station(station) for station in problem.mission.stations],
-        "calls": _calls(model, len(problem.mission.stations)),
+        "stations": [_station(station) for station in model.stations],
+        "calls": _calls(model, len(model.stations)),
         **_profiles(profiles),
         "makespan_includes_return": problem.mission.rules.makespan_includes_return,
     }
@@ -99,9 +98,11 @@ def _calls(model: PlanModel, stations: int) -> Bools:
     return np.array([[model.may_call(i, k) for k in range(stations)] for i in range(model.robots)], dtype=np.bool_)
 
 
-def _station(station: Station) -> tuple[float, float, bool, bool, int]:
-    swap_s = station.swap_s if station.swaps else -1.0
-    return station.charge_per_s or 0.0, swap_s, station.unloads, station.partial, station.slots
+def _station(station: Service) -> tuple[float, float, bool, bool, int]:
+    refill = station.refill
+    if refill is None or refill.rate is None:
+        return 0.0, -1.0 if refill is None else refill.whole_s, station.unloads, True, station.slots
+    return refill.rate, -1.0, station.unloads, refill.partial, station.slots
 
 
 def _profiles(profiles: Sequence[LegTimes]) -> dict[str, Any]:

@@ -13,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.model import Station
-from muster.model.rules.battery import energy_at_start, energy_room
 from muster.model.rules.rule import Bools, Floats, Question
 
 _ROUNDING = 1e-9
@@ -45,9 +44,7 @@ def energy_reaches(problem: Travelled) -> Bools:
         return reaches
     pickup = problem.model.pickups
     delivery = {k: j for j, k in enumerate(pickup) if k >= 0}
-    for i, robot in enumerate(problem.robots):
-        if robot.battery is None:
-            continue
+    for i in problem.model.parts.energy:
         reach = _Reach(problem, i)
         for j in range(len(problem.tasks)):
             first, then = (pickup[j], j) if pickup[j] >= 0 else (j, delivery.get(j))
@@ -73,13 +70,13 @@ class _Reach:
         self._between = np.minimum(between, np.where(np.eye(len(hubs), dtype=np.bool_), 0.0, math.inf))
         self._there = np.min(self._between[:, :, None] + self._out[None], axis=1)  # (hubs, n)
         self._back = np.min(back[:, :, None] + self._between[None], axis=1)  # (n, hubs)
-        self._full = energy_room(problem.robots[i])
+        self._full = float(problem.model.energy[i])
         self._slack = _ROUNDING * (1 + self._full)
         self._work = problem.work_usage(i)
         self._filling = [
             k + 2 for k, s in enumerate(problem.stations) if s.gives_energy and problem.model.may_call(i, k)
         ]
-        at_start = energy_at_start(problem, i)
+        at_start = float(problem.model.energy_at_start[i])
         self._levels = self._with_stations({0: at_start}, self._between[0], at_start)
         self._ends = self._to_end() if problem.robots[i].place_at_end(problem.mission.rules) is not None else None
 

@@ -12,7 +12,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from muster.mission.model import Station
 from muster.mission.values.arrays import Bools, Floats
+from muster.model.energy import Refill
 
 Openings = list[tuple[float, float]]
 """When something may begin: spans from, until, seconds, sorted and apart."""
@@ -63,6 +65,30 @@ class Meter:
         return cls(name, grows, np.array(most, dtype=np.float64), none, grows, none)
 
 
+@dataclass(frozen=True)
+class Service:
+    """What robots get at a station.
+
+    Parameters
+    ----------
+    refill
+        the energy that it adds; None: none.
+    unloads
+        whether a robot puts down what no task delivers.
+    slots
+        how many robots at once.
+    """
+
+    refill: Refill | None
+    unloads: bool
+    slots: int
+
+    @classmethod
+    def of(cls, station: Station) -> Service:
+        """Return the service of a station."""
+        return cls(Refill.of(station), station.unloads, station.slots)
+
+
 @dataclass(eq=False)
 class Parts:
     """What rules have contributed so far, to a model of so many robots and tasks."""
@@ -92,6 +118,7 @@ class Parts:
     )  # of kinds of primitives the word of the first rule that gave some
     rule: str = ""  # the word of the rule that contributes now; empty: none
     free: set[int] = field(default_factory=set)  # robots, or tasks, that the rule which contributes now does not bind
+    words: dict[str, str] = field(default_factory=dict)  # by primitive, of the first rule that contributed any
 
     def _given(self, *kinds: str) -> None:
         for kind in kinds if self.rule else ():
@@ -175,7 +202,6 @@ class Parts:
     def deliver(self, j: int, pickup: int) -> None:
         """One robot does both, the pickup first, and neither is done alone."""
         self.taken_on_by[j] = pickup
-        self.follows(j, pickup)
 
     def uses(self, i: int, most: float) -> None:
         """The usage of robot i is at most so much."""
@@ -195,6 +221,10 @@ class Parts:
         """Robot i has energy for so much usage at most, and at first; stations give it more."""
         self._given("energy")
         self.energy[i] = room, at_start
+
+    def named(self, word: str) -> None:
+        """Remember the word of the rule that has contributed, for the primitives of which there were none before."""
+        self.words |= {name: word for name, given in vars(self).items() if given and name not in self.words}
 
 
 def _both(tied: dict[int, set[int]], j: int, k: int) -> None:

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from muster.mission.values.arrays import Bools, Floats, Indices
-from muster.model.parts import Gap, Meter, Openings, Parts, Seats
+from muster.model.parts import Gap, Meter, Openings, Parts, Seats, Service
 
 ROUNDING = 2e-9
 """By how much a time may be above a limit, relative; a little more than the judge allows."""
@@ -30,10 +30,17 @@ class PlanModel:
         what the rules have contributed.
     due
         (n,) when a task should have ended: of the objective `lateness`, binding nothing; inf: never late.
+    stations
+        what robots get at each station that there is, whatever they need.
     """
 
     parts: Parts
     due: Floats
+    stations: tuple[Service, ...] = ()
+
+    def word_of(self, *primitives: str) -> str:
+        """The word of the rule that gives one of these parts, by which reasons name it; empty: none does."""
+        return next((self.parts.words[name] for name in primitives if name in self.parts.words), "")
 
     @property
     def tasks(self) -> int:
@@ -111,6 +118,11 @@ class PlanModel:
         """(m,) for how much usage a robot's energy is enough at most; inf: for any."""
         return _filled({i: room for i, (room, _) in self.parts.energy.items()}, self.robots, math.inf)
 
+    @property
+    def refills(self) -> bool:
+        """Whether robots get energy on the way."""
+        return any(station.refill for station in self.stations)
+
     @cached_property
     def energy_at_start(self) -> Floats:
         """(m,) the same at first."""
@@ -131,12 +143,14 @@ class PlanModel:
 
     def gaps(self, j: int) -> list[Gap]:
         """The tasks that are done before a task; how long after the end of each it begins, at least and at most."""
-        return [(k, *self.parts.gaps[j][k]) for k in sorted(self.parts.gaps.get(j, ()))]
+        own = self.parts.gaps.get(j, {})
+        return [(k, *own.get(k, (0.0, math.inf))) for k in self.awaited[j]]
 
     @cached_property
     def awaited(self) -> list[list[int]]:
-        """For each task those that are done before it."""
-        return [sorted(self.parts.gaps.get(j, ())) for j in range(self.tasks)]
+        """For each task those that are done before it, also the one that takes on board what it delivers."""
+        pickups = enumerate(self.pickups)
+        return [sorted({*self.parts.gaps.get(j, ()), pickup} - {-1}) for j, pickup in pickups]
 
     @cached_property
     def units(self) -> list[list[int]]:

@@ -24,7 +24,7 @@ from muster.mission.value_types import shown
 from muster.model.core_arrays import core_arrays
 from muster.model.lengths import Measured
 from muster.model.measured_energy import Drains, EnergyLeft
-from muster.model.parts import Parts
+from muster.model.parts import Parts, Service
 from muster.model.plan_model import PlanModel
 from muster.model.rules import Rule, all_rules
 from muster.model.subproblem import cut_down
@@ -180,11 +180,12 @@ class Problem:
             parts.rule = rule.word
             parts.free = {number for word, number in self.freed if word == rule.word}
             rule.compile(self, parts)
+            parts.named(rule.word)
         parts.rule, parts.free = "", set()
         for j, latest_s in enumerate(self.sooner):
             parts.ends(j, latest_s)
         due = np.array([math.inf if task.due_s is None else task.due_s for task in self.tasks])
-        return PlanModel(parts, due)
+        return PlanModel(parts, due, tuple(map(Service.of, self.stations)))
 
     def amounts(self, of: Callable[[Task], float]) -> Floats:
         """(n,) an amount of each task; of one that stands for what a robot has done so far, what that sums to."""
@@ -196,21 +197,14 @@ class Problem:
         """(m,) the most usage of a robot; inf where unlimited."""
         return self.model.capacity
 
-    @property
-    def awaited(self) -> list[list[int]]:
-        """For each task those that are done before it."""
-        return self.model.awaited
-
     @cached_property
     def prerequisites(self) -> list[list[int]]:
-        """The same without the task whose load it delivers."""
-        found = zip(self.awaited, self.model.pickups, strict=True)
-        return [[k for k in before if k != pickup] for before, pickup in found]
-
-    @property
-    def partners(self) -> list[int | None]:
-        """For each task the other one of its transport: which takes on what it delivers, or delivers its load."""
-        return self.model.partners
+        """For each task those before it, but one that is so only as it takes on what the task delivers."""
+        pairs = zip(self.model.awaited, self.model.pickups, strict=True)
+        return [
+            [k for k in before if k != pickup or self.tasks[k].id in self.tasks[j].prerequisites]
+            for j, (before, pickup) in enumerate(pairs)
+        ]
 
     def with_partner(self, j: int) -> tuple[int, ...]:
         """A task, with all that can only be done together with it where transports are among them, in order.
@@ -218,15 +212,15 @@ class Problem:
         Those are the other task of its transport, what begins with either, and what waits for one of them while
         another waits for it.
         """
-        whole = (
-            [k for k in self.closed([j]) if j in self.closed([k])] if any(k is not None for k in self.partners) else []
-        )
-        if all(self.partners[k] is None for k in whole):
+        partners = self.model.partners
+        tied = self.closed([j]) if self.model.parts.taken_on_by else []
+        whole = [k for k in tied if j in self.closed([k])]
+        if all(partners[k] is None for k in whole):
             return (j,)
         ordered: list[int] = []
         while len(ordered) < len(whole):
             left = [k for k in whole if k not in ordered]
-            free = [k for k in left if not set(self.awaited[k]).intersection(left)]
+            free = [k for k in left if not set(self.model.awaited[k]).intersection(left)]
             ordered.append(min(free or left))
         return tuple(ordered)
 
@@ -236,7 +230,7 @@ class Problem:
         waiting = list(needed)
         while waiting:
             j = waiting.pop()
-            partner = self.partners[j]
+            partner = model.partners[j]
             new = {*self.prerequisites[j], *model.beginning_with(j), *([] if partner is None else [partner])} - needed
             needed |= new
             waiting += new
@@ -389,7 +383,7 @@ class Problem:
             priority=_floats(t.priority for t in self.tasks),
             allowed=self.allowed_by_kind,
             kind=self.kinds,
-            prerequisites=self.awaited,
+            prerequisites=self.model.awaited,
             entry=self._entries,
             exit=self._exits,
             place_class=self._task_geometry.classes,

@@ -56,7 +56,7 @@ def goods_of(problem: Problem, tasks: Sequence[int]) -> Goods:
     transports = [
         (index[partner], index[j])
         for j in tasks
-        if problem.tasks[j].delivers is not None and (partner := problem.partners[j]) in index
+        if problem.tasks[j].delivers is not None and (partner := problem.model.partners[j]) in index
     ]
     loads = [_whole(problem.tasks[j].load) for j in tasks]
     for pickup, delivery in transports:

@@ -6,8 +6,6 @@ pass over the routes: cheapest insertion ([rosenkrantz1977]) on the schedule of 
 
 from __future__ import annotations
 
-import math
-
 from muster.allocation.allocator import Routes
 from muster.allocation.working_roster import WorkingRoster
 from muster.model.problem import Problem
@@ -16,7 +14,8 @@ from muster.model.problem import Problem
 def inserted(problem: Problem, routes: Routes) -> Routes:
     """Admissible routes, with every task put in that fits: the rest of them keeps its order and its robots.
 
-    Tasks are put in by priority, then by deadline, then in the order of the problem; each after its prerequisites.
+    Tasks are put in by priority, then by when they have ended at the latest, then in the order of the problem; each
+    after its prerequisites.
     """
     roster = WorkingRoster(problem, routes)
     refused: set[int] = set()
@@ -32,7 +31,7 @@ def inserted(problem: Problem, routes: Routes) -> Routes:
 
 
 def _urgency(problem: Problem, unit: int) -> tuple[float, float]:
-    """What comes first is less: the greatest priority of a unit's tasks, then their earliest deadline."""
-    tasks = [problem.tasks[j] for j in problem.model.units[unit]]
-    deadlines = (math.inf if task.deadline_s is None else task.deadline_s for task in tasks)
-    return -max(task.priority for task in tasks), min(deadlines)
+    """What comes first is less: the greatest priority of a unit's tasks, then their earliest latest end."""
+    model = problem.model
+    tasks = model.units[unit]
+    return -max(problem.tasks[j].priority for j in tasks), float(model.ends_by[tasks].min())

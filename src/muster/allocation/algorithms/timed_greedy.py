@@ -3,7 +3,7 @@
 [tcf-thesis], section 3.2.1, Algorithm 1, with units of work in place of tasks: each step appends the unit whose team
 has the least debit. A team's cost c is what its members pay together, and u the greatest usage among them (3.17). With
 the objectives `makespan` and `lateness` the debit is what the objective grows by, waiting included. The dependency
-coefficient (3.20) is left out, as lags say when a dependant can follow.
+coefficient (3.20) is left out, as gaps say when a dependant can follow.
 """
 
 from __future__ import annotations

@@ -50,6 +50,11 @@ class BidTerms:
         """Of WINNERS."""
         return WINNERS[0]
 
+    @property
+    def weights(self) -> tuple[float, float, float]:
+        """What counts of the energy that a robot has used up, and of the suitability and quality that it lacks."""
+        return self.battery_weight, self.suitability_weight, self.quality_weight
+
 
 @dataclass(frozen=True, kw_only=True)
 class Terms(BidTerms):

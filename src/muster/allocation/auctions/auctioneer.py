@@ -10,11 +10,11 @@ import numpy as np
 from muster import core
 from muster.allocation.allocator import Routes
 from muster.allocation.auctions.auction_terms import BidTerms
-from muster.allocation.auctions.bids import BID_RULES, Floats, Standing, lack_penalty, weighted
+from muster.allocation.auctions.bids import BID_RULES, Penalties, Standing, weighted
 from muster.allocation.auctions.winners import WINNER_RULES, Indices, KeptLowest, Lowest, Sale, WinnerRule
 from muster.allocation.stop import Stop
+from muster.mission.values.arrays import Floats
 from muster.model.problem import Problem
-from muster.model.skill_quality import skill_quality
 
 Sales = dict[int, tuple[int, Sale, Floats]]
 """By task: round, sale and (m,) the bids for the task, of the last time that it was sold."""
@@ -46,7 +46,7 @@ class Auctioneer:
         self._bidders = core.Bidders(problem.core, insert=terms.placement == "insert", figure=self._rule.figure)
         by_task = terms.suitability_weight or terms.quality_weight  # the lowest figure need not make the lowest bid
         rule = WINNER_RULES[terms.winner_rule]
-        self._quality = skill_quality(problem) if terms.quality_weight else np.empty((0, 0))
+        self._penalties = Penalties(problem, terms)
         self._winner_rule: WinnerRule = KeptLowest(self) if by_task and rule is Lowest else rule(self)
         self._on_round = on_round
         self._robots = range(len(problem.robots))
@@ -141,12 +141,4 @@ class Auctioneer:
         return Standing(self._usages[robots], self._lengths[robots], self._greatest_usage)
 
     def _weighted(self, bids: Floats, robots: int | slice, tasks: int | slice | Indices) -> Floats:
-        terms, penalty = self._terms, np.zeros(())
-        if terms.battery_weight:
-            shares = self._problem.drains.shares(self._usages[robots], robots)
-            penalty = penalty + terms.battery_weight * shares
-        if terms.suitability_weight:
-            penalty = penalty + terms.suitability_weight * lack_penalty(self._problem.suitability[robots, tasks])
-        if terms.quality_weight:
-            penalty = penalty + terms.quality_weight * lack_penalty(self._quality[robots, tasks])
-        return weighted(bids, penalty)
+        return weighted(bids, self._penalties.of(self._usages[robots], robots, tasks))

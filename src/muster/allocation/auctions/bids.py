@@ -15,9 +15,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from muster.allocation.auctions.auction_terms import BidTerms
+from muster.mission.values.arrays import Floats, Indices
+from muster.model.problem import Problem
+from muster.model.skill_quality import skill_quality
 
 FIGURES = ("growth", "arrivals", "end")
 """`growth` of the route's usage; `arrivals`, what is added to the sum of usages on arrival at tasks; `end`, when the
@@ -95,3 +97,23 @@ def weighted(bid: Floats, penalty: Floats | float) -> Floats:
 def lack_penalty(score: Floats) -> Floats:
     """What a score, of suitability or of quality, lacks to 1: 0 to 1."""
     return 1.0 - score
+
+
+class Penalties:
+    """By how much bids are made worse: by what robots have used up, and by what they lack to do a task well."""
+
+    def __init__(self, problem: Problem, terms: BidTerms) -> None:
+        self._problem = problem
+        self._used, self._unsuitable, self._unskilled = terms.weights
+        self._quality = skill_quality(problem) if self._unskilled else np.empty((0, 0))
+
+    def of(self, usages: Floats, robots: int | slice, tasks: int | slice | Indices) -> Floats:
+        """The penalty of robots, which have used so much, at tasks."""
+        penalty = np.zeros(())
+        if self._used:
+            penalty = penalty + self._used * self._problem.drains.shares(usages, robots)
+        if self._unsuitable:
+            penalty = penalty + self._unsuitable * lack_penalty(self._problem.suitability[robots, tasks])
+        if self._unskilled:
+            penalty = penalty + self._unskilled * lack_penalty(self._quality[robots, tasks])
+        return penalty

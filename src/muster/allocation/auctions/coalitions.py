@@ -2,7 +2,7 @@
 
 Sequential single-item auction with bids of coalitions, as coalitions are formed task by task in [shehory1998] and
 [vig2006]: in each round every coalition that is worth a look bids for every unit, and one unit is sold. A bid is what
-the schedule allows: the unit is put where its windows, deadlines, lags and what waits for it leave a place. Of a team's
+the schedule allows: the unit is put where its times, those before it and what waits for it leave a place. Of a team's
 task the coalition that costs least bids, and beside it, for each of its members, the one that costs least without it.
 
 An auction never takes a task back. So bids that leave time for what is not sold yet come first: those by which a unit,
@@ -20,7 +20,7 @@ import numpy as np
 
 from muster import core
 from muster.allocation.auctions.auction_terms import Terms
-from muster.allocation.auctions.bids import lack_penalty
+from muster.allocation.auctions.bids import Penalties
 from muster.allocation.auctions.latest_ends import LatestEnds
 from muster.allocation.stop import Stop
 from muster.allocation.working_roster import Routes, WorkingRoster
@@ -28,7 +28,6 @@ from muster.mission.auction_book import Award, Bid, Book, TakeBid
 from muster.mission.errors import ParameterError
 from muster.mission.plan import tie_order
 from muster.model.problem import Problem
-from muster.model.skill_quality import skill_quality
 
 
 @dataclass(frozen=True)
@@ -102,7 +101,7 @@ class CoalitionAuction:
         unit = problem.model.unit
         self._deliver = {unit[j] for j, pickup in enumerate(problem.model.pickups) if pickup >= 0}
         self._go_on_from(start)
-        self._quality = skill_quality(problem) if terms.quality_weight else np.empty((0, 0))
+        self._penalties = Penalties(problem, terms)
         self.sales: list[CoalitionSale] = []
 
     @property
@@ -236,19 +235,9 @@ class CoalitionAuction:
 
     def _price(self, insertion: core.UnitInsertion) -> float:
         """What the objective grows by, made worse by the mean penalty of the members."""
-        penalty = float(np.mean([self._penalty(robot, task) for task, robot, _ in insertion.members]))
+        penalties = [self._penalties.of(np.array(self.usage(i)), i, j) for j, i, _ in insertion.members]
+        penalty = float(np.mean(penalties))
         return insertion.score / (1.0 + penalty) if insertion.score < 0.0 else insertion.score * (1.0 + penalty)
-
-    def _penalty(self, robot: int, task: int) -> float:
-        terms, penalty = self._terms, 0.0
-        if terms.battery_weight:
-            usage = np.array([self.usage(robot)])
-            penalty += terms.battery_weight * float(self._problem.drains.shares(usage, slice(robot, robot + 1))[0])
-        if terms.suitability_weight:
-            penalty += terms.suitability_weight * float(lack_penalty(self._problem.suitability[robot, task]))
-        if terms.quality_weight:
-            penalty += terms.quality_weight * float(lack_penalty(self._quality[robot, task]))
-        return penalty
 
 
 def _team(bid: CoalitionBid) -> frozenset[tuple[int, int]]:

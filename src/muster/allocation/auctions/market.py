@@ -1,7 +1,7 @@
 """Market with relinquishing and annealing.
 
 [market-paper], Algorithm 1. With `usage: time` the cost of a route is the
-paper's A + B, travel by speed and work by efficiency, bounded by the battery as work capacity; its objective is `max`.
+paper's A + B, travel by speed and work by efficiency, bounded by the energy as work capacity; its objective is `max`.
 
 Where the text leaves room: the first auction stands before the loop, so that a plan is there whatever the number of
 iterations; the best allocation is kept apart from the current one, which a worse one replaces with the probability

@@ -1,6 +1,6 @@
 """The earliest times at which tasks can begin and end in any plan that does all of them.
 
-Each task looked at alone is reached by the shortest way, and waits for its windows and for the earliest ends of its
+Each task looked at alone is reached by the shortest way, and waits until it may begin and for the earliest ends of its
 prerequisites [kelley1959]. A team of k robots has one that is no earlier than the k-th earliest of all.
 """
 
@@ -80,7 +80,7 @@ class _Bounding:
         return kth_least(np.maximum(self._begins, self._there) + seconds, self._members)
 
     def _raise(self, j: int) -> None:
-        """Raise the begin of a task by its prerequisites, its windows and the tasks that begin with it."""
+        """Raise the begin of a task by its prerequisites, when it may begin and the tasks that begin with it."""
         rules, begins = self._rules, self._begins
         for k, after, within in rules.gaps(j):
             begins[j] = max(begins[j], self._end(k) + after)

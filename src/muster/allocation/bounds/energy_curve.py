@@ -1,13 +1,12 @@
 """How much energy a robot can have at most, by when it is at a place: exact, or above what is true, never below.
 
 A curve is a list of points (time, energy). It is concave, rises from point to point, and is constant after the last
-one: who charges longer is there later. Before the first point the robot cannot be there.
+one: who is filled longer is there later. Before the first point the robot cannot be there.
 """
 
 from __future__ import annotations
 
 import itertools
-import math
 from bisect import bisect_right
 from collections.abc import Sequence
 
@@ -25,7 +24,7 @@ def energy_at(curve: Curve, time: float) -> float:
     return energy + (more - energy) * (time - low) / (high - low)
 
 
-def shifted(curve: Curve, seconds: float, energy: float) -> list[tuple[float, float]]:
+def moved(curve: Curve, seconds: float, energy: float) -> list[tuple[float, float]]:
     """Return the curve once so much time and energy is gone."""
     return [(time + seconds, level - energy) for time, level in curve]
 
@@ -42,7 +41,7 @@ def with_at_least(curve: Curve, energy: float) -> list[tuple[float, float]]:
 
 
 def begun(curve: Curve, opens: float, closes: float) -> list[tuple[float, float]]:
-    """Return the part within a time window: the robot waits for its begin, and charges until then."""
+    """Return the part within a span: the robot waits for its begin, and goes on filling until then."""
     if not curve or max(opens, curve[0][0]) > closes:
         return []
     first = max(opens, curve[0][0])
@@ -51,8 +50,8 @@ def begun(curve: Curve, opens: float, closes: float) -> list[tuple[float, float]
     return [(first, energy_at(curve, first)), *inside, *last]
 
 
-def charged(curve: Curve, rate: float, full: float) -> list[tuple[float, float]]:
-    """Return the curve after a charge of any length."""
+def filled_partly(curve: Curve, rate: float, full: float) -> list[tuple[float, float]]:
+    """Return the curve once a robot was filled for any length of time."""
     kept = [curve[0]]
     for (low, energy), (high, more) in itertools.pairwise(curve):
         if more - energy <= rate * (high - low):
@@ -62,15 +61,11 @@ def charged(curve: Curve, rate: float, full: float) -> list[tuple[float, float]]
     return kept if level >= full else [*kept, (time + (full - level) / rate, full)]
 
 
-def filled(curve: Curve, rate: float, full: float) -> list[tuple[float, float]]:
-    """Return the curve after a charge until the battery is full."""
+def filled_up(curve: Curve, rate: float, full: float) -> list[tuple[float, float]]:
+    """Return the curve once a robot was filled until there is no more room."""
     return [(min(time + max(0.0, full - level) / rate for time, level in curve), full)]
 
 
 def covers(curve: Curve, other: Curve) -> bool:
     """Whether there is at least as much energy as on the other curve at all times."""
     return curve[0][0] <= other[0][0] and all(energy_at(curve, time) >= energy for time, energy in other)
-
-
-NEVER_EMPTY = math.inf
-"""The energy of a robot without a battery."""

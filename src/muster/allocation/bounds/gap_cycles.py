@@ -1,4 +1,4 @@
-"""Lags that no schedule keeps: a cycle of bounds on the begins of tasks, each of which raises the next for ever."""
+"""Gaps that no schedule keeps: a cycle of bounds on the begins of tasks, each of which raises the next for ever."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ class _Bound:
     said: str
 
 
-def lag_cycle(works: Works, tasks: Sequence[int]) -> str:
-    """Which lags among tasks exclude each other, in words; empty: none do. By Bellman and Ford."""
+def gap_cycle(works: Works, tasks: Sequence[int]) -> str:
+    """Which gaps between tasks exclude each other, in words; empty: none do. By Bellman and Ford."""
     bounds = [bound for j in tasks for bound in _bounds(works, j)]
     if all(bound.seconds >= 0 for bound in bounds):
         return ""  # nothing may begin only so long after another
@@ -56,7 +56,7 @@ def lag_cycle(works: Works, tasks: Sequence[int]) -> str:
 
 
 def _bounds(works: Works, j: int) -> Iterator[_Bound]:
-    """The bounds by the lags of a task, and by the tasks that begin with it."""
+    """The bounds by the gaps before a task, and by the tasks that begin with it."""
     tasks, rules = works.problem.tasks, works.rules
     for k, after, within in rules.gaps(j):
         name, before = tasks[j].id, tasks[k].id

@@ -10,13 +10,11 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from muster.allocation.bounds.gap_cycles import lag_cycle
+from muster.allocation.bounds.gap_cycles import gap_cycle
 from muster.model.bottleneck import bottleneck
 from muster.model.plan_model import ROUNDING, PlanModel
 from muster.model.problem import Bools, Floats, Problem
-from muster.model.rules.deadline import too_late
 from muster.model.rules.times import spans
-from muster.model.rules.window import closed
 
 _MOST_ROUNDS = 50  # of narrowing bounds; they hold whenever it ends
 _MOST_NARROWED = 2_000_000  # pairs times robots (or tasks) up to which bounds are narrowed again for each of these
@@ -36,7 +34,7 @@ class Limits:
         (m, n) the least seconds from a robot's start to a task, and from there to the end of its route; empty: nothing
         is timed.
     ready
-        (n,) seconds until everything is there that work on a task needs, whoever does it; its windows not looked at.
+        (n,) seconds until everything is there that work on a task needs, whoever does it; its openings not looked at.
     begin
         (n,) seconds until work on a task begins; inf: never.
     awaited
@@ -193,7 +191,7 @@ class Limits:
             needed, waiting = {j}, [j]
             while waiting:
                 k = waiting.pop()
-                new = {*self.problem.prerequisites[k], *self.rules.units[self.rules.unit[k]]} - needed
+                new = {*self.rules.awaited[k], *self.rules.units[self.rules.unit[k]]} - needed
                 needed |= new
                 waiting += new
             self._needed[j] = sorted(needed - {j})
@@ -203,7 +201,7 @@ class Limits:
     def held_back(self) -> dict[int, str]:
         """The tasks that no plan does as one before them may end only so long before, each with what is too late."""
         tasks = range(len(self.problem.tasks)) if self.is_timed else ()
-        found = {j: _too_far(self, j) or lag_cycle(self, [j, *self.must_also(j)]) or _held_back(self, j) for j in tasks}
+        found = {j: _too_far(self, j) or gap_cycle(self, [j, *self.must_also(j)]) or _held_back(self, j) for j in tasks}
         return {j: late for j, late in found.items() if late}
 
     @cached_property
@@ -314,14 +312,14 @@ def _too_far(limits: Limits, j: int) -> str:
 def _held_back(limits: Limits, j: int) -> str:
     """Which task before a task would be too late in every plan that does both, as it may not end too long before."""
     tasks = [j, *limits.must_also(j)]
-    lags = [(k, b, within) for k in tasks for b, _, within in limits.rules.gaps(k) if math.isfinite(within)]
-    if not lags:
+    gaps = [(k, b, within) for k in tasks for b, _, within in limits.rules.gaps(k) if math.isfinite(within)]
+    if not gaps:
         return ""
     times = _Times(limits.ready.copy(), limits.begin.copy(), list(limits.awaited))
     for _ in range(len(tasks) + 1):
         waiting = [
             times.wait(limits.rules, b, times.begin[k] - within - limits.longest_work[b], None)
-            for k, b, within in lags
+            for k, b, within in gaps
             if math.isfinite(times.begin[k])
         ]
         if not any(waiting) and not _sweep(limits, times):
@@ -334,9 +332,13 @@ def _late(limits: Limits, times: _Times, k: int) -> str:
     problem, begin = limits.problem, float(times.begin[k])
     if math.isinf(limits.begin[k]) or begin == limits.begin[k]:
         return ""
-    late = closed(problem, k, "begins at", float(times.ready[k]))
-    late = late or too_late(problem, k, begin + float(limits.shortest_work[k]))
+    late = late_task(problem, k, float(times.ready[k]), begin + float(limits.shortest_work[k]))
     return f"{problem.tasks[k].id} may end only so long before what follows: it {late}" if late else ""
+
+
+def late_task(problem: Problem, j: int, ready: float, end: float) -> str:
+    """That task j is too late which is ready, and ends, at these times at the earliest; empty: by no rule."""
+    return next((late for rule in problem.rules if (late := rule.late(problem, j, ready, end))), "")
 
 
 def _begin(rules: PlanModel, u: int, ready: Floats) -> float:

@@ -213,7 +213,7 @@ def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound
     """Bound the time at which the last task ends.
 
     Theorem. (1) Critical path: no task begins earlier than `EarliestTimes` tells, by its robots, its prerequisites and
-    its windows. (2) The robots of k routes are on their way or at work for no longer than from when they are available
+    its openings. (2) The robots of k routes are on their way or at work for no longer than from when they are available
     to the last end: k times that is at least the least total time of k routes, the tasks of teams counted for each
     member, plus the k least times of availability. The bound is the least over k, and at least (1). Routes are open,
     unless the way to the robots' ends counts. (3) The last end is not before what `weighed_shares` and `far_shares`

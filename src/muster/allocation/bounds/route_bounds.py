@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 from muster.allocation.bounds import energy_curve
 from muster.allocation.bounds.energy_curve import Curve
-from muster.mission.stations import Station
+from muster.model.parts import Service
 from muster.model.problem import Problem
 
 _ROUNDING = 1e-9
@@ -46,7 +46,7 @@ class _Label:
     usage: float
     extra: float  # the sum of what the objective counts of each task
     ended: float  # when the last task ended at the earliest
-    since: float  # seconds of ways since then; inf: the robot charged meanwhile
+    since: float  # seconds of ways since then; inf: the robot got energy meanwhile
     curve: Curve
     put_down: tuple[float, ...]
 
@@ -112,7 +112,7 @@ class _Robot:
         self._left = 0
 
     def _first(self) -> _Label:
-        at_start = float(self._problem.model.energy_at_start[self._i]) if self._drains else energy_curve.NEVER_EMPTY
+        at_start = float(self._problem.model.energy_at_start[self._i])
         nothing = (0.0,) * len(self._goods)
         return _Label(0.0, 0.0, 0.0, 0.0, [(self._robot.available_from_s, at_start)], nothing)
 
@@ -167,7 +167,7 @@ class _Robot:
         while waiting:
             here, label = waiting.pop()
             yield from self._moved(label, here, to)
-            for there, station in enumerate(self._problem.stations, first):
+            for there, station in enumerate(self._problem.model.stations, first):
                 if not self._problem.model.may_call(self._i, there - first):
                     continue
                 for arrived in self._moved(label, here, there) if there != here else ():
@@ -189,7 +189,7 @@ class _Robot:
         usage, seconds = self._way(here, to)
         if not math.isfinite(usage) or label.usage + usage > self._most:
             return
-        curve = energy_curve.shifted(label.curve, seconds, usage if self._drains else 0.0)
+        curve = energy_curve.moved(label.curve, seconds, usage if self._drains else 0.0)
         if self._drains:
             curve = energy_curve.with_at_least(curve, -_ROUNDING * (1 + self._full))
         if curve:
@@ -200,14 +200,15 @@ class _Robot:
             ended = max(label.ended, curve[0][0] - since)
             yield replace(label, usage=label.usage + usage, curve=curve, since=since, ended=ended)
 
-    def _served(self, label: _Label, station: Station) -> _Label | None:
+    def _served(self, label: _Label, station: Service) -> _Label | None:
         """A label at a station once the robot is served; None: it would put down more than it has."""
-        curve, since = label.curve, math.inf if self._drains and station.gives_energy else label.since
-        if self._drains and station.swaps:
-            curve = [(curve[0][0] + station.swap_s, self._full)]
-        elif self._drains and station.charge_per_s is not None:
-            serve = energy_curve.charged if station.partial else energy_curve.filled
-            curve = serve(curve, station.charge_per_s, self._full)
+        refill = station.refill if self._drains else None
+        curve, since = label.curve, math.inf if refill is not None else label.since
+        if refill is not None and refill.rate is None:
+            curve = [(curve[0][0] + refill.whole_s, self._full)]
+        elif refill is not None and refill.rate is not None:
+            fill = energy_curve.filled_partly if refill.partial else energy_curve.filled_up
+            curve = fill(curve, refill.rate, self._full)
         put_down = label.put_down
         if station.unloads and self._goods:
             put_down = tuple(self._loads[c] - self._kept[c] for c in self._goods)
@@ -220,14 +221,14 @@ class _Robot:
         return all(-slack[c] <= loads[c] <= self._room[c] + slack[c] for c in self._goods)
 
     def _worked(self, label: _Label, j: int, on_board: Sequence[float]) -> Iterator[_Label]:
-        """Labels at a task once the work is done, one for each of its windows."""
+        """Labels at a task once the work is done, one for each span in which it may begin."""
         rules, usage, takes = self._problem.model, float(self._work[j]), float(self._takes[j])
         if label.usage + usage > self._most or not self._is_carried(label, on_board):
             return
         latest = (float(rules.ends_by[j]) - takes) * (1 + _ROUNDING) + _ROUNDING
         for opens, closes in rules.openings[j] or ((-math.inf, math.inf),):
             curve = energy_curve.begun(label.curve, opens, min(latest, closes * (1 + _ROUNDING) + _ROUNDING))
-            curve = energy_curve.shifted(curve, takes, usage if self._drains else 0.0)
+            curve = energy_curve.moved(curve, takes, usage if self._drains else 0.0)
             if self._drains:
                 curve = energy_curve.with_at_least(curve, -_ROUNDING * (1 + self._full))
             if curve:

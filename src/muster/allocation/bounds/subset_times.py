@@ -17,7 +17,7 @@ def subset_ends(limits: Limits, i: int, tasks: Sequence[int]) -> Floats:
     """(2**k,) the earliest end of a route of robot i with each set of k tasks; inf where one of them is too late.
 
     By dynamic programming over sets and their last task, as for usage; each task begins no earlier than it can whoever
-    does it, and in one of its windows.
+    does it, and only when it may.
     """
     problem, rules, count = limits.problem, limits.rules, len(tasks)
     work = problem.work_seconds(i)
@@ -46,7 +46,7 @@ def subset_ends(limits: Limits, i: int, tasks: Sequence[int]) -> Floats:
 
 
 def keep_relations(problem: Problem, tasks: Sequence[int]) -> Bools:
-    """(2**k,) which sets of tasks one robot may do if all are done: both of `same_robot_as`, not both of others."""
+    """(2**k,) which sets of tasks one robot may do if all are done: all of one crew, and none of tasks of others."""
     rules, sets = problem.model, np.arange(1 << len(tasks))
     able = np.ones(len(sets), dtype=np.bool_)
     for k, j in enumerate(tasks):
@@ -90,7 +90,7 @@ def _done_before(problem: Problem, j: int) -> set[int]:
     found, waiting = {j}, [j]
     while waiting:
         k = waiting.pop()
-        new = {*problem.awaited[k], *problem.model.beginning_with(k)} - found
+        new = {*problem.model.awaited[k], *problem.model.beginning_with(k)} - found
         found |= new
         waiting += new
     return found

@@ -2,7 +2,7 @@
 
 Each member of a task's team works on it for no less than its least work, whatever the plan; ways come on top. So the
 work of tasks that a group of robots alone can do, each task as often as it has members, is no more than what the group
-has in all: of shifts, up to the last deadline, of work capacity, or of batteries that no station fills.
+has in all: of time up to when routes or tasks are over at the latest, of usage, or of energy that no station gives.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from muster.allocation.bounds.usage_bounds import UsageBounds
 from muster.mission.texts.counting import counted
 from muster.model.problem import Bools, Floats, Problem
-from muster.model.rules.battery import energy_at_start
+from muster.model.rules import all_rules
 from muster.model.rules.rule import ROUNDING, listed
 
 _MOST_KINDS = 6  # of tasks by who can do them, up to which two kinds are looked at together
@@ -34,7 +34,7 @@ class Shortfall:
     Parameters
     ----------
     resource
-        what is short: `shift`, `time` (before the last deadlines), `capacity` or `battery`.
+        what is short: the word of a rule, see `Rule.resource`.
     robots, tasks
         a group of robots, all of them or some, and the tasks that no other robot can do; in mission order.
     everyone
@@ -87,9 +87,7 @@ class Shortfall:
         return cls(**{**named, "robots": tuple(named["robots"]), "tasks": tuple(named["tasks"])})
 
     def _of(self) -> str:
-        return {"shift": "shift", "time": "time before the last deadline", "capacity": "work capacity"}.get(
-            self.resource, "battery"
-        )
+        return dict(filter(None, (rule.resource for rule in all_rules()))).get(self.resource, self.resource)
 
     def _who(self) -> str:
         if self.everyone:
@@ -130,7 +128,7 @@ class _Resource:
     possible: Bools
     work: Floats
     has: Floats
-    by_deadline: Bools | None = None  # (m,) whether deadlines, and not its shift, say how much time a robot has
+    by_tasks: Bools | None = None  # (m,) whether its tasks, and not its route, say how much time a robot has
 
     def shortfall(self, group: frozenset[int], tasks: Sequence[int]) -> Shortfall | None:
         problem, robots = self.problem, sorted(group)
@@ -147,7 +145,7 @@ class _Resource:
         most = float(self.has[robots].max())
         lacking = needed - available
         return Shortfall(
-            resource="time" if self.by_deadline is not None and self.by_deadline[robots].any() else self.name,
+            resource=_OF_TASKS if self.by_tasks is not None and self.by_tasks[robots].any() else self.name,
             robots=tuple(robot.id for robot in problem.mission.robots if problem.robot_index[robot.id] in group),
             tasks=tuple(task.id for task in problem.mission.tasks if problem.task_index[task.id] in set(own)),
             everyone=len(robots) == len(problem.robots),
@@ -169,6 +167,7 @@ class _Resource:
 
 
 _SECONDS = "robot-seconds"
+_OF_TASKS = "time"
 
 
 def _resources(problem: Problem, possible: Bools, tasks: Sequence[int]) -> Iterator[_Resource]:
@@ -179,17 +178,18 @@ def _resources(problem: Problem, possible: Bools, tasks: Sequence[int]) -> Itera
     longest = seconds.max(axis=0, initial=0.0)  # a team takes as long as its slowest member
     last = np.array([_last_end(problem, [j for j in tasks if possible[i, j]], longest) for i in robots])
     has = np.maximum(0.0, np.minimum(until, last) - start)
-    yield _Resource("shift", _SECONDS, problem, possible, seconds, has, last < until)
+    yield _Resource(rules.word_of("over_by") or _OF_TASKS, _SECONDS, problem, possible, seconds, has, last < until)
     usage = seconds if problem.in_time else np.array([problem.work_usage(i) for i in robots])
     unit = _SECONDS if problem.in_time else problem.usage_unit
-    yield _Resource("capacity", unit, problem, possible, usage, problem.capacity)
-    if problem.holds("battery") and not any(station.gives_energy for station in problem.stations):
-        energy = np.array([energy_at_start(problem, i) for i in robots])
-        yield _Resource("battery", unit, problem, possible, usage, np.minimum(energy, problem.capacity))
+    if word := rules.word_of("capacity"):
+        yield _Resource(word, unit, problem, possible, usage, problem.capacity)
+    if (word := rules.word_of("energy")) and not rules.refills:
+        has = np.minimum(rules.energy_at_start, problem.capacity)
+        yield _Resource(word, unit, problem, possible, usage, has)
 
 
 def _last_end(problem: Problem, tasks: Sequence[int], longest: Floats) -> float:
-    """When the last of some tasks ends at the latest, by windows and deadlines."""
+    """When the last of some tasks ends at the latest, whatever their robots."""
     rules = problem.model
     ends = [
         min(float(rules.ends_by[j]), rules.openings[j][-1][1] + float(longest[j]) if rules.openings[j] else math.inf)

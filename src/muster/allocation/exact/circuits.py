@@ -121,13 +121,13 @@ class Circuits:
 
     def _keep_prerequisites(self) -> None:
         for j in self.tasks:
-            for k in self.problem.awaited[j]:
+            for k in self.problem.model.awaited[j]:
                 self.model.add_implication(self.done[j], self.done[k])
 
     def _rank_units(self) -> None:
         """Rule out deadlocks: a rank of each unit that grows along every leg and from every prerequisite."""
         problem, unit = self.problem, self.rules.unit
-        if not any(problem.awaited) and not self.rules.with_teams and len(self.rules.units) == len(self.tasks):
+        if not any(problem.model.awaited) and not self.rules.with_teams and len(self.rules.units) == len(self.tasks):
             return
         last = len(self.tasks) - 1
         rank = [self.model.new_int_var(0, last, "") for _ in self.tasks]
@@ -135,7 +135,7 @@ class Circuits:
             if a != self.start:
                 self.model.add(rank[unit[b]] >= rank[unit[a]] + 1).only_enforce_if(leg)
         for j in self.tasks:
-            for k in problem.awaited[j]:
+            for k in problem.model.awaited[j]:
                 self.model.add(rank[unit[j]] >= rank[unit[k]] + 1).only_enforce_if(self.done[j])
 
     def route_of(self, i: int, after: dict[tuple[int, int], int]) -> list[int]:

@@ -112,7 +112,7 @@ def ancestors(problem: Problem) -> list[set[int]]:
     before: list[set[int]] = [set() for _ in problem.tasks]
 
     def fill(j: int) -> set[int]:
-        for k in problem.awaited[j] if not before[j] else ():
+        for k in problem.model.awaited[j] if not before[j] else ():
             before[j] |= {k} | fill(k)
         return before[j]
 

@@ -1,4 +1,4 @@
-"""Loads, transports and batteries as constraints of a program, and what stations add to routes as cuts.
+"""Goods on board, transports and energy as constraints of a program, and what stations add to routes as cuts.
 
 Stations are no part of the program, which is a relaxation without them. Where a route of its plan must call at some, or
 cannot be done, the cut says so of all routes that begin alike: a logic-based Benders decomposition ([hooker2003]), of
@@ -26,9 +26,8 @@ _ROUNDING = 1e-9
 
 def needs_stations(problem: Problem) -> bool:
     """Whether routes may have to call at stations."""
-    stations = problem.mission.stations
-    energy = problem.asked.get("battery") is not None and any(station.gives_energy for station in stations)
-    return energy or _unloads(problem)
+    model = problem.model
+    return (bool(model.parts.energy) and model.refills) or _unloads(problem)
 
 
 def most_detours(problem: Problem) -> float:
@@ -47,35 +46,35 @@ def most_seconds(problem: Problem) -> float:
     """How much later calls at stations make the tasks of a route at most."""
     if not needs_stations(problem):
         return 0.0
-    n, stations = len(problem.tasks), problem.mission.stations
-    held = max((robot.battery.capacity for robot in problem.robots if robot.battery is not None), default=0.0)
-    served = sum(station.swap_s + held / (station.charge_per_s or np.inf) for station in stations)
+    n, stations = len(problem.tasks), problem.model.stations
+    room = max(problem.model.energy[np.isfinite(problem.model.energy)], default=0.0)
+    served = sum(station.refill.seconds(room) for station in stations if station.refill is not None)
     slowest = min(robot.speed_mps for robot in problem.robots)
     ways = most_detours(problem) / (1.0 if problem.in_time else min(1.0, slowest))
     return ways + 2.0 * (n + 1) * served
 
 
 def add_goods(circuits: Circuits) -> None:
-    """Let transports be whole, loads fit on board, and batteries last where no station fills them."""
+    """Let transports be whole, all fit on board, and energy last where no station gives any."""
     problem, model = circuits.problem, circuits.model
     for j, k in enumerate(problem.model.pickups):
         if k >= 0:
             model.add(circuits.done[j] == circuits.done[k])
             for i in circuits.robots:
                 model.add(circuits.does.get((i, j), 0) == circuits.does.get((i, k), 0))
-    _loads(circuits)
-    if problem.asked.get("battery") and not any(station.gives_energy for station in problem.mission.stations):
+    _meters(circuits)
+    if not problem.model.refills:
         for i, most in enumerate(problem.model.energy_at_start):
             if np.isfinite(most):
                 model.add(circuits.usage[i] <= circuits.costs.scale.at_most(float(most)))
 
 
 def _unloads(problem: Problem) -> bool:
-    return problem.asked.get("load") is not None and any(station.unloads for station in problem.mission.stations)
+    return bool(problem.model.meters) and any(station.unloads for station in problem.model.stations)
 
 
-def _loads(circuits: Circuits) -> None:
-    """What is on board after each task, by commodity; where stations unload, only what is going to be delivered."""
+def _meters(circuits: Circuits) -> None:
+    """What is on board after each task; where stations unload, only what is going to be delivered."""
     problem = circuits.problem
     for meter in problem.model.meters:
         unloads = _unloads(problem)

@@ -24,6 +24,7 @@ from muster.mission.plan import Plan, Route
 from muster.mission.system.clock import Clock, SystemClock
 from muster.mission.system.extras import needs_extra
 from muster.model.problem import Problem
+from muster.model.rules import all_rules
 from muster.model.rules.rule import ROUNDING
 
 if TYPE_CHECKING:
@@ -253,7 +254,9 @@ class _Solving:
             return True
         pairs = zip(self._problem.robots, routes, strict=True)
         bare = [Route(robot.id, tuple(self._problem.tasks[j].id for j in route)) for robot, route in pairs]
-        ignored = tuple(dict.fromkeys((*self._problem.ignored, "battery", "load")))
+        ignored = tuple(
+            dict.fromkeys((*self._problem.ignored, *(rule.word for rule in all_rules() if rule.kept_by_calls)))
+        )
         return not self._judge(self._problem.mission, Plan(routes=tuple(bare)), ignored)
 
     def _forbid(self, program: Program, routes: Routes) -> None:

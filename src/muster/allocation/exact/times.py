@@ -41,15 +41,15 @@ class Times:
         self._follow_routes()
         self._end_routes()
         self._follow_prerequisites()
-        self._keep_windows()
+        self._keep_openings()
 
     def _latest_base(self) -> float:
         """No time is later than this by more than travel and work of all tasks: the latest that all begins from."""
         rules = self._rules
-        opens = (window[0] for windows in rules.openings for window in windows)
-        lags = sum(after for j in self._circuits.tasks for _, after, _ in rules.gaps(j))
-        spans = (span[0] for i in self._circuits.robots for span in rules.spans(i))
-        return float(max(chain(self.available, opens, spans))) + lags
+        opens = (begin for spans in rules.openings for begin, _ in spans)
+        gaps = sum(after for j in self._circuits.tasks for _, after, _ in rules.gaps(j))
+        rests = (span[0] for i in self._circuits.robots for span in rules.spans(i))
+        return float(max(chain(self.available, opens, rests))) + gaps
 
     def _follow_routes(self) -> None:
         circuits, model = self._circuits, self._model
@@ -117,7 +117,7 @@ class Times:
         self._model.add_max_equality(slowest, work)
         return slowest
 
-    def _keep_windows(self) -> None:
+    def _keep_openings(self) -> None:
         rules, model = self._rules, self._model
         for j in self._circuits.tasks:
             done = self._circuits.done[j]

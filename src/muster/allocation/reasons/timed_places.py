@@ -6,22 +6,17 @@ import itertools
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 
 from muster import core
 from muster.allocation.bounds.route_bounds import RouteBounds
-from muster.allocation.reasons.timed_teams import Member, TimedTeams, stop_of
-from muster.mission.ignorable_rules import IGNORABLE
-from muster.mission.model import Task
+from muster.allocation.reasons.timed_teams import Member, TimedTeams
 from muster.model.problem import Problem
-from muster.model.rules import all_rules
-from muster.model.rules.deadline import too_late
-from muster.model.rules.rule import InPlan
-from muster.model.rules.shift import beyond, with_end
-from muster.model.rules.window import closed
+from muster.model.rules import Rule
+from muster.model.rules.rule import InPlan, Tried
 
-_RELAXED = {rule.word: rule for rule in all_rules() if rule.lifted_late}
-"""The rules that are looked at one after the other, in the order of rules."""
+_TIES = ("together", "same_crew", "apart")
+"""What ties tasks to others by their robots or begins."""
 
 _MOST_PLACES = 400  # of a team, the earliest first, that are looked at
 _MOST_TEAMS = 60
@@ -60,6 +55,7 @@ class TimedPlaces(TimedTeams):
         super().__init__(problem, routes)
         self._looked_at_some = set[tuple[int, int]]()  # pairs of which not all places are looked at
         self.outcome = cache(self._outcome)
+        self._word_of = problem.model.word_of
         self.without = cache(self._without)
         self.bounds_without = cache(lambda words: RouteBounds(self.without(words)))
 
@@ -86,10 +82,15 @@ class TimedPlaces(TimedTeams):
         found = self.outcome(i, j)
         return found.detail if found.word == word else None
 
+    @cached_property
+    def _lifted(self) -> dict[str, Rule]:
+        """The rules that are looked at one after the other, in the order of rules."""
+        return {rule.word: rule for rule in self.problem.rules if rule.lifted_late}
+
     def _outcome(self, i: int, j: int) -> Outcome:
         """The place of task j with the least usage of robot i, or why there is none."""
         if missing := self._left_out_with(j):
-            return Outcome(word="relation", detail=missing)
+            return Outcome(word=self._word_of(*_TIES), detail=missing)
         if missing := self._transport_lacks(i, j):
             return Outcome(word=self._word_of_whole(j), detail=missing)
         places = self.places(i, j)
@@ -99,7 +100,8 @@ class TimedPlaces(TimedTeams):
         if (i, j) in self._looked_at_some:
             return Outcome()
         if not places:
-            return Outcome(word="relation", detail="no team for it keeps its relations to the tasks of the plan")
+            detail = "no team for it keeps its relations to the tasks of the plan"
+            return Outcome(word=self._word_of(*_TIES), detail=detail)
         return self._refused(i, j, places)
 
     def _left_out_with(self, j: int) -> str:
@@ -115,13 +117,13 @@ class TimedPlaces(TimedTeams):
 
     def _word_of_whole(self, j: int) -> str:
         """The rule by which a task can only be done together with the tasks of a transport."""
-        if self.problem.partners[j] is not None:
-            return "load"
-        return "relation" if self.problem.model.beginning_with(j) else "prerequisite"
+        if self.problem.model.partners[j] is not None:
+            return self._word_of("taken_on_by")
+        return self._word_of(*(_TIES if self.problem.model.beginning_with(j) else ("gaps",)))
 
     def _transport_lacks(self, i: int, j: int) -> str:
         """What keeps robot i from the other task of a transport; empty: nothing."""
-        problem, other, whole = self.problem, self.problem.partners[j], self.problem.with_partner(j)
+        problem, other, whole = self.problem, self.problem.model.partners[j], self.problem.with_partner(j)
         if other is not None and (not problem.may(i, other) or not self._keeps_relations(i, other)):
             return f"comes with {problem.tasks[other].id}, which it cannot do"
         for one in whole if len(whole) > 1 else ():
@@ -142,7 +144,7 @@ class TimedPlaces(TimedTeams):
 
         Rules that are not proven to be broken, as other calls at stations may keep them, are looked away from.
         """
-        words = tuple(word for word in _RELAXED if word not in unproven)
+        words = tuple(word for word in self._lifted if word not in unproven)
         left = self._admissible(self.without((*words, *unproven)), places)
         if not left:
             return self._no_order(i, j, places)
@@ -151,16 +153,17 @@ class TimedPlaces(TimedTeams):
             before, left = left, self._admissible(self.without(others), [place for place, _ in left])
             if left:
                 continue
-            if _RELAXED[word].kept_by_calls and not self._is_proven(others, before):
+            if self._lifted[word].kept_by_calls and not self._is_proven(others, before):
                 return self._refused(i, j, places, (*unproven, word))
             tie = self._tie_to_others(j)
-            if tie and not _RELAXED[word].concerns(self.problem, j):
+            if tie and not self._lifted[word].concerns(self.problem, j):
                 detail = f"at every place in its route the tasks that come with it would break the rule {word}"
                 return Outcome(word=tie, detail=detail)
             if tie and not self._is_by_itself(word, i, j, before):
                 detail = f"at every place in its route another robot that it needs would break the rule {word}"
                 return Outcome(word=tie, detail=detail)
-            return Outcome(word=word, detail=self._detail(word, i, j, before))
+            tried = Tried(self.problem, i, j, [(place.routes, found) for place, found in before])
+            return Outcome(word=word, detail=self._lifted[word].broken_at(tried))
         assert unproven  # or a place that keeps all rules would be admissible
         return Outcome()
 
@@ -178,91 +181,51 @@ class TimedPlaces(TimedTeams):
         """The rule by which other robots must do something beside one that does a task; empty: none."""
         rules = self.problem.model
         if rules.beginning_with(j):
-            return "relation"
+            return self._word_of(*_TIES)
         if rules.is_for_team(j):
-            return "team"
-        return "relation" if len(self.problem.with_partner(j)) > 2 else ""
+            return self._word_of("seats", "sums")
+        if len(self.problem.with_partner(j)) > 2:
+            return self._word_of(*_TIES, "taken_on_by")
+        return ""
 
     def _is_by_itself(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> bool:
         """Whether a rule is broken at all places by the route of robot i, whatever the others do."""
-        rule = _RELAXED[word]
+        rule = self._lifted[word]
         if not rule.of_a_route or (rule.of_the_team and len(self.problem.with_partner(j)) <= 2):
             return True
-        alone = replace(
-            self.problem, ignored=tuple(one for one in IGNORABLE if one != word), fixed=(), known=self.problem.measured
-        )
+        problem = self.problem
+        others = tuple(one.word for one in problem.rules if one.word != word)
+        alone = replace(problem, ignored=(*problem.ignored, *others), fixed=(), known=problem.measured)
         own = ([place.routes[i] if k == i else [] for k in range(len(self.routes))] for place, _ in left)
         return not any(core.Inspection(alone.core, routes).admissible for routes in own)
 
     def _without(self, words: Sequence[str]) -> Problem:
-        """The problem in which some rules do not hold; windows still open, and the last ones do not close.
-
-        So with shifts: robots rest between them, and the last ones do not end.
-        """
+        """The problem in which some rules leave every place, and no more of them than that is missing."""
         problem = self.problem
+        ignored, tasks, robots = list(problem.ignored), problem.tasks, problem.robots
+        for word in words:
+            left, staying = self._lifted[word].without_limit(tasks), self._lifted[word].without_end(robots)
+            if left is None and staying is None:
+                ignored.append(word)
+            tasks, robots = left or tasks, staying or robots
         if not words:
             return problem
-        tasks = tuple(map(_never_closed, problem.tasks)) if "window" in words else problem.tasks
-        robots = tuple(with_end(robot, None) for robot in problem.robots) if "shift" in words else problem.robots
-        ignored = (*problem.ignored, *(word for word in words if word not in ("window", "shift")))
-        return replace(problem, ignored=ignored, tasks=tasks, robots=robots, known=problem.measured)
+        return replace(problem, ignored=tuple(ignored), tasks=tasks, robots=robots, known=problem.measured)
 
     def _no_order(self, i: int, j: int, places: list[Place]) -> Outcome:
         """Why no place is left whatever the times and capacities."""
-        free = self.without(tuple(_RELAXED))
+        free = self.without(tuple(self._lifted))
         usages = [core.Inspection(free.core, place.routes).usages for place in places]  # finite in a circle
         if any(math.isinf(used[i]) for used in usages):
             return Outcome(word="unreachable", detail=self.problem.no_way_to(i, j))
         if any(map(math.isinf, itertools.chain.from_iterable(usages))):
             return Outcome(word="unreachable", detail="there is no way for another robot of its team")
-        patient = replace(free, tasks=tuple(map(_without_within, free.tasks)), known=free.measured)
-        if self._admissible(patient, places):
-            detail = "at every place in its route a task would begin longer after its prerequisite than within_s allows"
-        else:
-            detail = "at every place in its route tasks would wait for each other in a circle"
+        for rule in self.problem.rules:
+            patient = None if rule.lifted_late else rule.without_limit(free.tasks)
+            if patient and self._admissible(replace(free, tasks=patient, known=free.measured), places):
+                return Outcome(word=rule.word, detail=rule.broken_at(Tried(self.problem, i, j, [])))
+        detail = "at every place in its route tasks would wait for each other in a circle"
         return Outcome(word="prerequisite", detail=detail)
-
-    def _detail(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> str:
-        """How a rule is broken at the place where it is broken least."""
-        said = _RELAXED[word].broken_at(self.problem, i, [(place.routes, found) for place, found in left])
-        if said is not None:
-            return said
-        if word not in ("shift", "window", "deadline"):
-            return f"at every place in its route the rule {word} would be broken"
-        if word == "shift":
-            ends = (self._route_end(found, i, place.routes[i]) for place, found in left)
-            own = beyond(self.problem, i, min(ends))
-            return own or "with it the route of another robot would end after its shift"
-        times = [(stop_of(found, i, place.at), place, found) for place, found in left]
-        own = self._own_lateness(word, i, j, [stop for stop, _, _ in times])
-        return own or self._others_lateness(word, i, j, min(times, key=lambda one: one[0][1]))
-
-    def _own_lateness(self, word: str, i: int, j: int, stops: list[tuple[float, float, float]]) -> str | None:
-        """That the task itself is too late at every place."""
-        if word == "deadline":
-            return too_late(self.problem, j, min(end for _, _, end in stops))
-        earliest, begin = (min(times) for times in list(zip(*stops, strict=True))[:2])
-        return closed(self.problem, j, "arrives at", earliest) or closed(self.problem, j, "begins at", begin)
-
-    def _others_lateness(
-        self, word: str, i: int, j: int, best: tuple[tuple[float, float, float], Place, core.Inspection]
-    ) -> str:
-        """Which other task would be too late, at the place where the task begins first."""
-        _, place, found = best
-        for r, route in enumerate(place.routes):
-            for at, k in enumerate(route):
-                _, begin, end = stop_of(found, r, at)
-                late = (
-                    closed(self.problem, k, "begins at", begin) if word == "window" else too_late(self.problem, k, end)
-                )
-                if late and k != j:
-                    return f"with it {self.problem.tasks[k].id} {late}".replace(" at the earliest", "")
-        what = "windows" if word == "window" else "deadlines"
-        return f"at no place in its route are all {what} kept"
-
-    def _route_end(self, found: core.Inspection, i: int, route: list[int]) -> float:
-        """When robot i is at the end of its route."""
-        return self.problem.back(i, stop_of(found, i, len(route) - 1)[2], route[-1])
 
     # --- places ------------------------------------------------------------------------------------------------------
 
@@ -319,9 +282,9 @@ class TimedPlaces(TimedTeams):
                 yield from self._grown(units[1:], longer, {**teams, **dict(zip(units[0], chosen, strict=True))}, i, j)
 
     def _teams_in_whole(self, k: int, teams: dict[int, tuple[int, ...]]) -> Iterator[tuple[int, ...]]:
-        """The teams of a task: that of the one whose load it delivers, or all that it can have."""
-        pickup = self.problem.partners[k]
-        if pickup in teams and self.problem.tasks[k].delivers is not None:
+        """The teams of a task: that of the one that takes on what it delivers, or all that it can have."""
+        pickup = self.problem.model.pickups[k]
+        if pickup in teams:
             yield teams[pickup]
         else:
             yield from self._teams_of(k, None)
@@ -362,19 +325,6 @@ class TimedPlaces(TimedTeams):
             return max(times[gap] for times, gap in zip(arrivals, at, strict=True)), -sum(at)
 
         return sorted(itertools.product(*near), key=order)
-
-
-def _never_closed(task: Task) -> Task:
-    """A task whose last window has no end."""
-    if not task.window_s:
-        return task
-    *before, (opens, _) = sorted(task.window_s, key=lambda window: window[0])
-    return replace(task, window_s=(*before, (opens, None)))
-
-
-def _without_within(task: Task) -> Task:
-    """A task that may begin however long after its prerequisites."""
-    return replace(task, lags={name: replace(lag, within_s=None) for name, lag in task.lags.items()})
 
 
 def in_plan(problem: Problem, routes: Sequence[Sequence[int]]) -> InPlan:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
 from muster import core
 from muster.model.bottleneck import fills
 from muster.model.problem import Problem
-from muster.model.rules.rule import ROUNDING, InPlan
+from muster.model.rules.rule import ROUNDING, InPlan, stop_of
 
 Member = tuple[int, int]
 """A robot, and the task that it does."""
@@ -119,12 +118,6 @@ class TimedTeams(InPlan):
         return set.intersection(*teams) if teams else None
 
 
-def has_schedule(found: Any) -> bool:
+def has_schedule(found: core.Inspection) -> bool:
     """Whether there are times at which inspected routes can be done."""
     return found.stops is not None
-
-
-def stop_of(found: Any, i: int, at: int) -> tuple[float, float, float]:
-    """Arrival, begin and end of a stop of inspected routes."""
-    _, arrive, begin, end = found.stops[i][at]
-    return arrive, begin, end

@@ -2,18 +2,34 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from muster.allocation.remedies.remedy import Remedy
-from muster.mission.model import Robot, Task
+from muster.allocation.allocator import Routes
+from muster.allocation.bounds.feasibility import impossible
+from muster.allocation.remedies.remedy import Before, Remedy
+from muster.mission.model import Task
 from muster.model.problem import Problem
-from muster.model.rules import Change
+from muster.model.rules.capacity import CapacityChange
 
 
-def pair_changes(problem: Problem, robot: Robot, task: Task) -> dict[str, Change]:
-    """By the words of rules the changes with which the robot may do the task."""
-    found = {rule.word: rule.change(problem, robot, task) for rule in problem.rules if rule.key is not None}
-    return {word: change for word, change in found.items() if change is not None}
+def as_they_are(problem: Problem, routes: Routes, j: int, robots: Iterable[int]) -> Iterator[Remedy]:
+    """For each robot what stands between it and the task by themselves, and the prerequisites that are left out."""
+    done, own, task = {k for route in routes for k in route}, problem.with_partner(j), problem.tasks[j]
+    awaited = problem.closed([before for k in own for before in problem.prerequisites[k]])
+    missing = [problem.tasks[k].id for k in awaited if k not in done and k not in own]
+    never = {item.task for item in impossible(problem)} if missing else set()
+    for i in robots:
+        robot = problem.robots[i]
+        changes = {rule.word: rule.change(problem, robot, task) for rule in problem.rules if rule.key is not None}
+        yield Remedy(
+            robot=robot.id,
+            changes={word: change for word, change in changes.items() if change is not None},
+            before=tuple(Before(name, name not in never) for name in missing),
+            unable=problem.action_refusal(i, j) or "",
+            capacity=CapacityChange(now=None if math.isinf(problem.capacity[i]) else robot.work_capacity),
+        )
 
 
 def changed(problem: Problem, remedy: Remedy, i: int, j: int) -> Problem:

@@ -7,16 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from muster.allocation.bounds.limits import Limits
+from muster.allocation.bounds.limits import Limits, late_task
 from muster.allocation.bounds.subset_times import sizes_that_differ, tied_pairs, ways_of
 from muster.allocation.bounds.usage_bounds import FEW, UsageBounds
 from muster.mission.model import Robot, Task
 from muster.mission.texts.counting import counted
-from muster.model.rules.deadline import too_late
 from muster.model.rules.rule import ROUNDING
-from muster.model.rules.shift import beyond
 from muster.model.rules.times import moments
-from muster.model.rules.window import closed
 
 
 def in_mission_order(items: Sequence[Robot] | Sequence[Task], names: Sequence[str]) -> tuple[str, ...]:
@@ -89,11 +86,11 @@ def _after(limits: Limits, i: int, a: int, b: int) -> str:
     ready = max(float(limits.pair_end[i, a] + way), float(limits.ready[b]))
     begin = float(rules.next_begin(b, np.array([ready]))[0])
     end = begin + max(float(limits.work[i, b]), float(limits.shortest_work[b]))
-    late = closed(problem, b, "begins at", ready) or too_late(problem, b, end)
-    if late:
+    if late := late_task(problem, b, ready, end):
         return f"with {first} first, {then} {late}"
-    late = beyond(problem, i, float(problem.model.busy_until(i, np.array(end), limits.home[i, b])))
-    return f"with {first} first and then {then}, {late}" if late else ""
+    over = float(rules.busy_until(i, np.array(end), limits.home[i, b]))
+    back = next((text for rule in problem.rules if (text := rule.over_late(problem, i, over))), "")
+    return f"with {first} first and then {then}, {back}" if back else ""
 
 
 def _however(bounds: UsageBounds, robots: list[int], tasks: list[int], names: str) -> str:
@@ -103,8 +100,8 @@ def _however(bounds: UsageBounds, robots: list[int], tasks: list[int], names: st
         return f"however {names} share them out, one of the robots would need more than its capacity"
     limited = np.isfinite(problem.capacity[robots]).any()
     breaks = "be too late or need more than its capacity" if limited else "be too late"
-    windows = (limits.rules.openings[j] for j in tasks)
-    closes = np.array([spans[-1][1] if spans else math.inf for spans in windows])
+    openings = (limits.rules.openings[j] for j in tasks)
+    closes = np.array([spans[-1][1] if spans else math.inf for spans in openings])
     last = float(np.minimum(closes, limits.rules.ends_by[tasks]).max())
     until = f"; all must begin or end by {moments(problem, last)[0]}" if math.isfinite(last) else ""
     if len(robots) == 1:

@@ -10,7 +10,7 @@ from muster import core
 from muster.allocation.allocator import Routes
 from muster.allocation.bounds.feasibility import impossible
 from muster.allocation.bounds.usage_bounds import FEW, UsageBounds
-from muster.allocation.remedies.changed_problem import changed, pair_changes, with_capacity
+from muster.allocation.remedies.changed_problem import as_they_are, changed, with_capacity
 from muster.allocation.remedies.remedy import Before, Remedy
 from muster.allocation.remedies.timed_remedies import timed_remedy
 from muster.allocation.search.witness_plans import Judge, attempt, bare_plan
@@ -84,22 +84,13 @@ def smallest(found: Sequence[Remedy]) -> Remedy | None:
 
 def _needs_as_is(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int, Remedy]]:
     """For each robot the changes that it needs, and the capacity with which its route has room; not judged yet."""
-    rest = _without(routes, j)
-    inspection = core.Inspection(problem.core, rest)
-    done = {k for route in rest for k in route}
-    missing = [k for k in problem.closed([j]) if k != j and k not in done]
-    never = {item.task for item in impossible(problem)} if missing else set()
-    before = tuple(Before(problem.tasks[k].id, problem.tasks[k].id not in never) for k in missing)
-    for i, robot in enumerate(problem.robots):
-        place = None if missing else _cheapest_place(inspection, i, j)
-        unlimited = math.isinf(problem.capacity[i])
-        now = None if unlimited else robot.work_capacity
+    inspection = core.Inspection(problem.core, _without(routes, j))
+    for i, first in enumerate(as_they_are(problem, routes, j, range(len(problem.robots)))):
+        place = None if first.before else _cheapest_place(inspection, i, j)
         room = None if place is None else _work_capacity(problem, place[1])
+        now = first.capacity.now
         enough = room if room is None or now is None else max(room, now)
-        capacity = CapacityChange(now=now, as_is=room, enough=enough)
-        unable = problem.action_refusal(i, j) or ""
-        changes = pair_changes(problem, robot, problem.tasks[j])
-        yield i, Remedy(robot=robot.id, changes=changes, before=before, unable=unable, capacity=capacity)
+        yield i, replace(first, capacity=CapacityChange(now=now, as_is=room, enough=enough))
 
 
 def _cheapest_place(inspection: core.Inspection, i: int, j: int) -> tuple[int, float] | None:

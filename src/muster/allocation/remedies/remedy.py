@@ -26,8 +26,8 @@ class Remedy:
     """What a robot needs to do a task in addition to all tasks of a plan.
 
     `changes`, by the words of rules, are what stands between the two by themselves, each of which is needed; and where
-    times, teams or relations matter those of windows, deadlines, shifts, least numbers of tasks, teams and relations
-    with which a plan was found: others may be enough as well. `before` are the prerequisites that the plan leaves out.
+    times, teams or relations matter those of other rules with which a plan was found: others may be enough as well.
+    `before` are the prerequisites that the plan leaves out.
     `enough` tells whether a plan with all this was found and judged; its routes are in `routes`. `unable` tells why the
     robot cannot do the task's action, whatever changes; empty if it can. `unreachable` tells that there is no way to
     the task, `impossible` that no capacity is enough beside the other changes: both are proven. Of many robots only
@@ -84,7 +84,7 @@ class Remedy:
 
 
 def more_calls(problem: Problem, routes: Routes, plan: Plan, i: int) -> tuple[str, ...]:
-    """The calls at stations of robot i in a plan that its route did not have: `a charge of 200 s at dock`."""
+    """The calls at stations of robot i in a plan that its route did not have: what it does, how long and where."""
     if not problem.stations:
         return ()
     before = [stop.name for stop in scheduled(problem, routes)[i].stops]
@@ -95,6 +95,5 @@ def more_calls(problem: Problem, routes: Routes, plan: Plan, i: int) -> tuple[st
         if stop.name in before:
             before.remove(stop.name)
             continue
-        what = "a charge" if stop.charged is not None else "a call"
-        found.append(f"{what} of {stop.end_s - stop.begin_s:.0f} s at {stop.name}")
+        found.append(f"{stop.said_of_station} of {stop.end_s - stop.begin_s:.0f} s at {stop.name}")
     return tuple(found)

@@ -29,9 +29,9 @@ from muster.mission.system.interrupts import on_ctrl_c
 EXPECTED = "local, auto, HOST:PORT of the head from a machine of the cluster, or ray://HOST:PORT from any other"
 
 _ATTEMPTS = 3
-_REACHED_WITHIN_S = 5.0
-_ANSWERED_WITHIN_S = 20.0  # Ray's own check has to start first
-_RETURNED_WITHIN_S = 3.0  # after a job was told to end
+_LONGEST_TO_REACH_S = 5.0
+_LONGEST_TO_ANSWER_S = 20.0  # Ray's own check has to start first
+_LONGEST_TO_RETURN_S = 3.0  # after a job was told to end
 _LOOK_EVERY_S = 0.1
 _LOCAL_STORE = 100_000_000  # bytes of shared memory, where Ray would take a third of the machine's
 
@@ -135,7 +135,7 @@ def _head(address: str) -> str | None:
 def _touch(place: str) -> None:
     """Raises OSError where nothing listens at HOST:PORT."""
     host, _, port = place.rpartition(":")
-    socket.create_connection((host.strip("[]"), int(port)), _REACHED_WITHIN_S).close()
+    socket.create_connection((host.strip("[]"), int(port)), _LONGEST_TO_REACH_S).close()
 
 
 def _require_answer(address: str) -> None:
@@ -154,7 +154,7 @@ def _require_answer(address: str) -> None:
         return
     check = [sys.executable, "-m", "ray.scripts.scripts", "health-check", "--address", place]
     try:
-        subprocess.run(check, timeout=_ANSWERED_WITHIN_S, capture_output=True, check=True)
+        subprocess.run(check, timeout=_LONGEST_TO_ANSWER_S, capture_output=True, check=True)
     except subprocess.SubprocessError:
         raise _no_cluster(address, "what is there is not the head of a Ray cluster of this version") from None
 
@@ -217,7 +217,7 @@ class Cluster:
             with suppress(OSError):
                 for offer in waiting:
                     ray.cancel(offer)
-        returned, late = ray.wait(offers, num_returns=len(offers), timeout=_RETURNED_WITHIN_S)
+        returned, late = ray.wait(offers, num_returns=len(offers), timeout=_LONGEST_TO_RETURN_S)
         if late:
             _log.warning("ray: of %d parts nothing came back in time; they keep the routes they had", len(late))
         return [self._got(offer) if offer in returned else None for offer in offers]

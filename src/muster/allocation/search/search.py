@@ -48,8 +48,7 @@ _PLANS, _MANY = 4, 5_000  # plans that a run begins with; one where it has so ma
 # Tasks and robots times steps, between two looks at the clock: some milliseconds.
 _BATCH = 400_000
 _BATCH_ON_SCHEDULE = 40_000
-_BATCH_OF_SLOW_STEPS = 4_000
-_SLOW = frozenset({"team", "battery"})  # what makes steps slow: teams are chosen, calls at stations placed
+_BATCH_OF_SLOW_STEPS = 4_000  # teams are chosen, or calls at stations placed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -194,7 +193,7 @@ class Variations:
 
 def _steps_at_once(problem: Problem) -> int:
     batch = _BATCH_ON_SCHEDULE if _on_schedule(problem) else _BATCH
-    if not _SLOW.isdisjoint(problem.asked):
+    if problem.model.with_teams or problem.model.parts.energy:
         batch = _BATCH_OF_SLOW_STEPS
     return max(20, min(1000, batch // (len(problem.tasks) + len(problem.robots))))
 

@@ -75,7 +75,7 @@ def _searched(
 
 
 def bare_plan(problem: Problem, routes: Routes) -> Plan:
-    """A plan of nothing but routes, with what is charged at stations."""
+    """A plan of nothing but routes, with calls at stations."""
     if problem.stations:
         by_robot = {route.robot: replace(route, usage=None) for route in scheduled(problem, routes)}
     else:

@@ -74,14 +74,14 @@ std::vector<Event> told(const std::vector<CrowdEvent>& found) {
   return events;
 }
 
-std::vector<Event> carried_out(CrowdWorld& world, const Poses& poses, const Poses& lags, const Counts& counted,
+std::vector<Event> carried_out(CrowdWorld& world, const Poses& poses, const Poses& short_of, const Counts& counted,
                                double still) {
   const std::size_t n = world.robots().size();
-  if (poses.shape(0) != n || lags.shape(0) != n || counted.shape(0) != n)
+  if (poses.shape(0) != n || short_of.shape(0) != n || counted.shape(0) != n)
     throw std::invalid_argument("the arrays must have a row for each robot");
   std::vector<Carried> after;
   for (std::size_t i = 0; i < poses.shape(0); ++i) {
-    const double *p = poses.data() + 4 * i, *l = lags.data() + 4 * i;
+    const double *p = poses.data() + 4 * i, *l = short_of.data() + 4 * i;
     after.push_back({Vec<3>{{p[0], p[1], p[2]}}, Vec<3>{{l[0], l[1], l[2]}}, p[3], l[3], counted.data()[2 * i],
                      counted.data()[2 * i + 1]});
   }
@@ -213,7 +213,7 @@ void bind_crowd_world(nb::module_& m) {
       .def("command", &command,
            "What robots that something else moves are to do in the next step: for each its velocity x, y, z, speed "
            "ahead of one that faces its way, yaw rate.")
-      .def("carried_out", &carried_out, "poses"_a, "lags"_a, "counted"_a, "still"_a,
+      .def("carried_out", &carried_out, "poses"_a, "short_of"_a, "counted"_a, "still"_a,
            "Where it brought them, (n, 4) of x, y, z, heading; by how much they would still go and turn on, were they "
            "told to stand; (n, 2) metres and radians that their wheels counted, NaN without wheels; slower than "
            "`still` is standing. "

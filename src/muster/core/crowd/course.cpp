@@ -141,7 +141,7 @@ bool passes(const CrowdRobot& robot, const Vec<3>& before, Tolerances tolerances
   const bool no_nearer = robot.turned_aside || away >= norm(point.at - before);
   if (point.stops() || robot.next + 1 == robot.way.size()) {
     const Braking braking{dt, robot.body.acceleration};
-    if (norm(robot.lag) > tolerances.arrival) return false;
+    if (norm(robot.short_of) > tolerances.arrival) return false;
     if (braking.distance(braking.slower(norm(robot.commanded))) > tolerances.arrival) return false;
     return away <= (no_nearer ? tolerances.arrival : robot.exact);
   }

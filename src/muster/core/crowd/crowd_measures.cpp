@@ -20,7 +20,7 @@ void CrowdWorld::measure(const AgentTree<3>& tree) {
   for (const CrowdRobot& robot : robots_) {
     fastest = std::max(fastest, norm(robot.velocity));
     largest = std::max(largest, robot.body.radius);
-    farthest_behind = std::max(farthest_behind, norm(robot.lag));
+    farthest_behind = std::max(farthest_behind, norm(robot.short_of));
   }
   std::vector<int> near;
   for (int i = 0; i < static_cast<int>(robots_.size()); ++i) {

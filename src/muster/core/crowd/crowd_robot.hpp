@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "crowd/braking.hpp"
-#include "random.hpp"
 #include "crowd/upright.hpp"
+#include "random.hpp"
 #include "vectors.hpp"
 
 namespace muster {
@@ -111,8 +111,8 @@ struct CrowdRobot {
   Vec<3> position;  // where it would come to a stand, were it told to now
   Vec<3> velocity;  // of the last step
   double heading = 0.0;
-  Vec<3> lag;                   // by which its body is not there yet; 0 where it moves exactly as it is told
-  double turn_lag = 0.0;        // the same of its heading
+  Vec<3> short_of;              // by which its body is not there yet; 0 where it moves exactly as it is told
+  double turn_short_of = 0.0;   // the same of its heading
   Vec<3> commanded;             // what it drove by: the velocity without noise
   double ahead = 0.0;           // the same of one that faces its way: speed ahead
   double yaw_rate = 0.0;        // and how fast it turns
@@ -156,7 +156,7 @@ struct CrowdRobot {
   std::vector<Segment> near_walls;  // the same as avoidance in the plane knows them
   Vec<3> looked_at;                 // where it was when they were collected
 
-  Vec<3> place() const { return position - lag; }
+  Vec<3> place() const { return position - short_of; }
   double facing() const;  // its body's heading
   double top_speed() const { return body.speed * slowed; }
   // The greatest speed on its way to the next way point.
@@ -199,6 +199,6 @@ inline Vec<3> Belief::told_of(const Vec<3>& at) const {
   return believed + Vec<3>{{c * off[0] + s * off[1], c * off[1] - s * off[0], off[2]}};
 }
 
-inline double CrowdRobot::facing() const { return wrapped(heading - turn_lag); }
+inline double CrowdRobot::facing() const { return wrapped(heading - turn_short_of); }
 
 }  // namespace muster

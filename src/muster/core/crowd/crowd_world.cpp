@@ -134,10 +134,10 @@ std::vector<Command> CrowdWorld::command() {
 std::vector<CrowdEvent> CrowdWorld::carried_out(const std::vector<Carried>& after, double still) {
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     CrowdRobot& robot = robots_[i];
-    robot.lag = after[i].lag;
-    robot.turn_lag = after[i].turn_lag;
-    robot.position = after[i].place + robot.lag;
-    robot.heading = wrapped(after[i].heading + robot.turn_lag);
+    robot.short_of = after[i].short_of;
+    robot.turn_short_of = after[i].turn_short_of;
+    robot.position = after[i].place + robot.short_of;
+    robot.heading = wrapped(after[i].heading + robot.turn_short_of);
     robot.velocity = (1.0 / settings_.dt) * (robot.place() - places_before_[i]);
     if (norm(robot.velocity) < still) robot.velocity = {};
     const double metres = norm(robot.velocity) * settings_.dt;

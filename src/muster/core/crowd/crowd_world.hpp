@@ -69,8 +69,8 @@ struct Motion {
 // Where a robot's body is, and by how much it would go on and turn on, were it told to stand now; and the metres and
 // radians that its wheels counted in the step, NaN of one without wheels.
 struct Carried {
-  Vec<3> place, lag;
-  double heading, turn_lag, counted, turn_counted;
+  Vec<3> place, short_of;
+  double heading, turn_short_of, counted, turn_counted;
 };
 
 // What an inertial unit feels: means between the middles of the last two steps, and over the last one. The axes are

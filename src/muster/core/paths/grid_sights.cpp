@@ -59,9 +59,9 @@ struct GridSights::Cone {
 };
 
 // The rectangle around an ellipse, row by row: no column of it is left out.
-class GridSights::Window {
+class GridSights::Frame {
  public:
-  Window(Point here, Point goal, double length) : everything_(!std::isfinite(length)) {
+  Frame(Point here, Point goal, double length) : everything_(!std::isfinite(length)) {
     const double apart = distance(here, goal);
     middle_ = {(here.x + goal.x) / 2, (here.y + goal.y) / 2};
     if (apart > 0.0) along_ = {(goal.x - here.x) / apart, (goal.y - here.y) / apart};
@@ -215,24 +215,24 @@ void GridSights::scan(const View& view, Lattice origin, Lattice left, Lattice ri
                       std::vector<int>& found) const {
   if (cross(right, left) <= 0) return;
   const Lattice from = placed(view, origin);
-  const Window window(in_cells(from), in_cells(placed(view, snap(within.goal))), within.length);
+  const Frame frame(in_cells(from), in_cells(placed(view, snap(within.goal))), within.length);
   std::vector<Cone> open{{static_cast<int>(from.y / kUnit), left, right}};
   while (!open.empty()) {
     const Cone cone = open.back();
     open.pop_back();
     if (cone.row >= map_.rows()) continue;
     const std::size_t before = open.size();
-    clip(view, from, cone, window, open);
-    for (std::size_t k = before; k < open.size(); ++k) collect(view, from, open[k], window, found);
+    clip(view, from, cone, frame, open);
+    for (std::size_t k = before; k < open.size(); ++k) collect(view, from, open[k], frame, found);
   }
 }
 
 // Adds the parts of a cone that get through its row.
-void GridSights::clip(const View& view, Lattice origin, const Cone& cone, const Window& window,
+void GridSights::clip(const View& view, Lattice origin, const Cone& cone, const Frame& frame,
                       std::vector<Cone>& open) const {
   const std::int64_t low = std::max<std::int64_t>(cone.row * kUnit - origin.y, 0),
                      high = (cone.row + 1) * kUnit - origin.y;
-  auto [from, to] = window.columns(cone.row, map_.columns());
+  auto [from, to] = frame.columns(cone.row, map_.columns());
   from = std::max(from, origin.x + floor_of(cone.left.x * low, cone.left.y));
   if (cone.right.y > 0) to = std::min(to, origin.x + ceil_of(cone.right.x * high, cone.right.y));
   if (from >= to) return;
@@ -253,10 +253,10 @@ void GridSights::clip(const View& view, Lattice origin, const Cone& cone, const 
 }
 
 // The corners on the lower side of a cone's row.
-void GridSights::collect(const View& view, Lattice origin, const Cone& cone, const Window& window,
+void GridSights::collect(const View& view, Lattice origin, const Cone& cone, const Frame& frame,
                          std::vector<int>& found) const {
   const std::int64_t up = cone.row * kUnit - origin.y;
-  auto [from, to] = window.columns(cone.row - 1, map_.columns());
+  auto [from, to] = frame.columns(cone.row - 1, map_.columns());
   // Straight up is the matter of `look_along`.
   from = std::max(from, origin.x + std::max<std::int64_t>(ceil_of(cone.left.x * up, cone.left.y), 1));
   if (cone.right.y > 0) to = std::min(to, origin.x + floor_of(cone.right.x * up, cone.right.y));

@@ -59,7 +59,7 @@ class GridSights : public Sights {
     bool contains(Lattice direction) const { return turned(direction).x >= 0 && turned(direction).y >= 0; }
   };
   struct Cone;
-  class Window;
+  class Frame;
 
   void find_corners();
   void add_corner(int x, int y);
@@ -69,8 +69,8 @@ class GridSights : public Sights {
   Lattice placed(const View& view, Lattice p) const;
   void scan(const View& view, Lattice origin, Lattice left, Lattice right, const Ellipse& within,
             std::vector<int>& found) const;
-  void clip(const View& view, Lattice origin, const Cone& cone, const Window& window, std::vector<Cone>& open) const;
-  void collect(const View& view, Lattice origin, const Cone& cone, const Window& window, std::vector<int>& found) const;
+  void clip(const View& view, Lattice origin, const Cone& cone, const Frame& frame, std::vector<Cone>& open) const;
+  void collect(const View& view, Lattice origin, const Cone& cone, const Frame& frame, std::vector<int>& found) const;
   void look_along(std::size_t line, Lattice origin, std::vector<int>& found) const;
 
   GridMap map_;

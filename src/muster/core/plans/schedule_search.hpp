@@ -74,8 +74,8 @@ class ScheduleSearch {
   Routes best_;
   Value best_value_;
   std::vector<int> pending_, removed_, critical_;
-  int tail_robot_ = 0, tail_at_ = 0, other_robot_ = 0, other_at_ = 0;  // after so many tasks tails are exchanged
-  std::vector<int> tail_, other_tail_;
+  int tail_robot_ = 0, tail_at_ = 0, second_robot_ = 0, second_at_ = 0;  // after so many tasks tails are exchanged
+  std::vector<int> tail_, second_tail_;
   std::vector<double> times_absent_;  // by unit: in how many plans it was left out, and 1
   std::vector<char> ruined_;
   std::vector<std::pair<double, int>> nearest_;

@@ -31,14 +31,14 @@ bool ScheduleSearch::find_tails(double most) {
   for (int k = 0; k < count; ++k) {
     const Visit* next = only_visit(near[k]);
     if (!next) continue;
-    other_robot_ = next->robot;
-    other_at_ = next->at - 1;
-    if (other_robot_ == tail_robot_ || other_at_ < problem_.fixed(other_robot_)) continue;
-    if (!joins(tail_robot_, tail_at_, other_robot_, other_at_) ||
-        !joins(other_robot_, other_at_, tail_robot_, tail_at_))
+    second_robot_ = next->robot;
+    second_at_ = next->at - 1;
+    if (second_robot_ == tail_robot_ || second_at_ < problem_.fixed(second_robot_)) continue;
+    if (!joins(tail_robot_, tail_at_, second_robot_, second_at_) ||
+        !joins(second_robot_, second_at_, tail_robot_, tail_at_))
       continue;
     if (sums_ways_ && current_ + scale_ * growth_of_tails() >= most) continue;
-    if (is_tail(tail_robot_, tail_at_, other_robot_) && is_tail(other_robot_, other_at_, tail_robot_)) return true;
+    if (is_tail(tail_robot_, tail_at_, second_robot_) && is_tail(second_robot_, second_at_, tail_robot_)) return true;
   }
   return false;
 }
@@ -56,8 +56,8 @@ double ScheduleSearch::growth_of_tails() const {
     const Visit &last = roster_.timeline().stop(robot, at), &next = roster_.timeline().stop(other, other_at + 1);
     return next.unit < 0 ? problem_.end_usage(robot, last.place) : problem_.travel_usage(robot, last.place, next.place);
   };
-  return way(tail_robot_, tail_at_, other_robot_, other_at_) + way(other_robot_, other_at_, tail_robot_, tail_at_) -
-         way(tail_robot_, tail_at_, tail_robot_, tail_at_) - way(other_robot_, other_at_, other_robot_, other_at_);
+  return way(tail_robot_, tail_at_, second_robot_, second_at_) + way(second_robot_, second_at_, tail_robot_, tail_at_) -
+         way(tail_robot_, tail_at_, tail_robot_, tail_at_) - way(second_robot_, second_at_, second_robot_, second_at_);
 }
 
 // Whether the other robot can do all that a robot does after so many tasks, and needs nothing for it from before.
@@ -86,12 +86,12 @@ bool ScheduleSearch::does_alone(int robot, int task) const {
 
 bool ScheduleSearch::exchange_tails() {
   take_tail(tail_robot_, tail_at_, tail_);
-  take_tail(other_robot_, other_at_, other_tail_);
+  take_tail(second_robot_, second_at_, second_tail_);
   if (!roster_.settle()) return false;
   const auto append = [&](const std::vector<int>& units, int robot) {
     return std::ranges::all_of(units, [&](int unit) { return roster_.append(unit, robot); });
   };
-  return append(other_tail_, tail_robot_) && append(tail_, other_robot_) && roster_.settle_begins();
+  return append(second_tail_, tail_robot_) && append(tail_, second_robot_) && roster_.settle_begins();
 }
 
 void ScheduleSearch::take_tail(int robot, int at, std::vector<int>& units) {

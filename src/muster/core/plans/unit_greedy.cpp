@@ -144,7 +144,7 @@ bool UnitGreedy::append_one() {
     roster_.rollback();
     refused_.push_back(entry);
   }
-  after_step(placed);
+  step_done(placed);
   return true;
 }
 
@@ -156,7 +156,7 @@ bool UnitGreedy::evaluate_all_again() {
   return !queue_.empty();
 }
 
-void UnitGreedy::after_step(const std::vector<int>& placed) {
+void UnitGreedy::step_done(const std::vector<int>& placed) {
   ++step_;
   forget_present();
   mark_changes();

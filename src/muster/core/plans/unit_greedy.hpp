@@ -53,7 +53,7 @@ class UnitGreedy {
   double debit(const UnitInsertion& insertion) const;
   bool evaluate_all_again();
 
-  void after_step(const std::vector<int>& placed);
+  void step_done(const std::vector<int>& placed);
   void mark_changes();
   void add_empty_twins();
   void evaluate_changed_units();

@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
-from muster import core
 from muster.mission.model import Robot
+from muster.mission.stations import Battery as BatteryNow
 from muster.model.energy import Energy
 from muster.model.parts import Parts
-from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot
+from muster.model.rules.rule import Bools, Change, Found, Limits, Outlook, Question, Rule, Tried, first_robot
 
 
 @dataclass(frozen=True)
 class LargerBattery(Change):
-    """What the robot's battery would have to hold; inf: without an end."""
+    """What the robot's battery would have to hold, and the one that it has now; inf: without an end."""
 
     capacity: float
     unit: str
+    now: BatteryNow
 
     @property
     def plain(self) -> float:
@@ -30,17 +31,13 @@ class LargerBattery(Change):
         return f"a battery of {self.capacity:.2f} {self.unit}"
 
     def robot(self, robot: Robot) -> Robot:
-        if robot.battery is None or math.isinf(self.capacity):
-            return replace(robot, battery=None)
-        return replace(robot, battery=replace(robot.battery, capacity=self.capacity))
+        larger = None if math.isinf(self.capacity) else replace(self.now, capacity=self.capacity)
+        return replace(robot, battery=larger)
 
-    def for_usage(self, robot: Robot, usage: float) -> LargerBattery | None:
-        """What is enough for a route that uses so much, without calls; None: the battery as it is."""
-        battery = robot.battery
-        if battery is None:
-            return None
-        needed = usage / (battery.at_start - battery.reserve)
-        return replace(self, capacity=needed) if needed > battery.capacity else None
+    def narrowed(self, found: Found) -> LargerBattery | None:
+        """What is enough for the route without calls."""
+        needed = found.usage / (self.now.at_start - self.now.reserve)
+        return replace(self, capacity=needed) if needed > self.now.capacity else None
 
 
 class Battery(Rule):
@@ -53,6 +50,7 @@ class Battery(Rule):
     of_the_team = True
     kept_by_calls = True
     key = "battery"
+    resource = ("battery", "battery")
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         if not problem.holds(self.word):
@@ -61,8 +59,9 @@ class Battery(Rule):
 
     def compile(self, problem: Question, parts: Parts) -> None:
         for i, robot in enumerate(problem.robots):
-            if robot.battery is not None:
-                parts.has_energy(i, energy_room(robot), energy_at_start(problem, i))
+            if (energy := Energy.of(robot)) is not None:
+                level = problem.levels[i] if problem.levels else energy.at_start
+                parts.has_energy(i, energy.capacity - energy.least, max(0.0, level - energy.least))
 
     def possible(self, limits: Limits) -> Bools | None:
         if not any(robot.battery for robot in limits.problem.robots):
@@ -74,33 +73,19 @@ class Battery(Rule):
         if battery is None or problem.energy_reaches[i, j] or math.isinf(outlook.least):
             return None
         least, unit = outlook.least, problem.usage_unit
-        holds = f"its battery holds {energy_at_start(problem, i):.2f} {unit} above its reserve"
+        holds = f"its battery holds {problem.model.energy_at_start[i]:.2f} {unit} above its reserve"
         if not problem.mission.stations:
             return f"takes at least {least:.2f} {unit}, {holds}"
         return f"takes at least {least:.2f} {unit}, {holds}, and no station is near enough"
 
-    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
-        usage, unit = min(found.usages[i] for _, found in places), problem.usage_unit
-        holds = f"its battery holds {energy_at_start(problem, i):.2f} {unit} above its reserve"
+    def broken_at(self, tried: Tried) -> str:
+        problem, unit = tried.problem, tried.problem.usage_unit
+        holds = f"its battery holds {problem.model.energy_at_start[tried.i]:.2f} {unit} above its reserve"
         stations = ", and no calls at stations make up for that" if problem.mission.stations else ""
-        return f"at least {usage:.2f} {unit} with it, {holds}{stations}"
+        return f"at least {tried.usage:.2f} {unit} with it, {holds}{stations}"
 
-    def lifted(self, problem: Question, i: int) -> LargerBattery | None:
+    def lifted(self, problem: Question, i: int, j: int, done: Collection[int]) -> LargerBattery | None:
         battery = problem.robots[i].battery
         if battery is None or battery.at_start <= battery.reserve:
             return None
-        return LargerBattery(math.inf, problem.usage_unit)
-
-
-def energy_room(robot: Robot) -> float:
-    """Return what a robot's battery holds above its reserve when it is full; inf without a battery."""
-    energy = Energy.of(robot)
-    return math.inf if energy is None else energy.capacity - energy.least
-
-
-def energy_at_start(problem: Question, i: int) -> float:
-    """Return what it holds above its reserve at first."""
-    energy = Energy.of(problem.robots[i])
-    if energy is None:
-        return math.inf
-    return max(0.0, (problem.levels[i] if problem.levels else energy.at_start) - energy.least)
+        return LargerBattery(math.inf, problem.usage_unit, battery)

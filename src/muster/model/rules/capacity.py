@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from muster import core
 from muster.model.parts import Parts
-from muster.model.rules.rule import ROUNDING, Bools, InPlan, Limits, Outlook, Question, Routes, Rule
+from muster.model.rules.rule import ROUNDING, Bools, InPlan, Limits, Outlook, Question, Rule, Tried
 
 
 class Capacity(Rule):
@@ -21,6 +19,7 @@ class Capacity(Rule):
     lifted_late = True
     of_a_route = True
     of_the_team = True
+    resource = ("capacity", "work capacity")
 
     def compile(self, problem: Question, parts: Parts) -> None:
         usable = 1.0 - problem.mission.rules.capacity_reserve
@@ -29,32 +28,31 @@ class Capacity(Rule):
                 parts.uses(i, usable * robot.work_capacity)
 
     def possible(self, limits: Limits) -> Bools:
-        return np.asarray(limits.usage <= limits.problem.capacity[:, None] * (1 + ROUNDING))
+        return np.asarray(limits.usage <= limits.rules.capacity[:, None] * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        if outlook.least <= problem.capacity[i] * (1 + ROUNDING):
+        if outlook.least <= problem.model.capacity[i] * (1 + ROUNDING):
             return None
         unit = problem.usage_unit
-        return f"takes at least {outlook.least:.2f} {unit}, of {problem.capacity[i]:.2f} {unit}"
+        return f"takes at least {outlook.least:.2f} {unit}, of {problem.model.capacity[i]:.2f} {unit}"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         if plan.is_timed:
             return plan.kept_out(self.word, i, j)
         insertion, problem = plan.insertion(i, j), plan.problem
-        if insertion is None or insertion.usage <= problem.capacity[i]:
+        if insertion is None or insertion.usage <= problem.model.capacity[i]:
             return None
         return _too_much(problem, i, insertion.usage)
 
-    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
-        usage = min(found.usages[i] for _, found in places)
-        if usage > problem.capacity[i]:
-            return _too_much(problem, i, usage)
+    def broken_at(self, tried: Tried) -> str:
+        if tried.usage > tried.problem.model.capacity[tried.i]:
+            return _too_much(tried.problem, tried.i, tried.usage)
         return "with its team one of the robots would need more than its capacity"
 
 
 def _too_much(problem: Question, i: int, usage: float) -> str:
     unit = problem.usage_unit
-    return f"at least {usage:.2f} {unit} with it, of {problem.capacity[i]:.2f} {unit}"
+    return f"at least {usage:.2f} {unit} with it, of {problem.model.capacity[i]:.2f} {unit}"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,41 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from muster.mission.model import Robot, Task
 from muster.model.parts import Parts
-from muster.model.rules.rule import (
-    ROUNDING,
-    Bools,
-    Change,
-    Limits,
-    Outlook,
-    Question,
-    Rule,
-    first_task,
-)
+from muster.model.rules.latest import Later, Latest
+from muster.model.rules.rule import ROUNDING, Bools, Limits, Outlook, Question, Tried, first_task
 from muster.model.rules.times import known_least, longer, moments, rounded, span
 
 
 @dataclass(frozen=True)
-class LaterDeadline(Change):
-    """A later deadline of a task: `until_s`, None without one; before `at_least_s` no admissible plan is enough."""
+class LaterDeadline(Later):
+    """A later deadline of a task."""
 
-    deadline_s: float
-    until_s: float | None
-    at_least_s: float | None = None
-
-    @property
-    def plain(self) -> dict[str, float | None]:
-        return asdict(self)
-
-    @property
-    def seconds(self) -> float:
-        return math.inf if self.until_s is None else self.until_s - self.deadline_s
+    of = "end"
+    limit_key = "deadline_s"
 
     @property
     def short(self) -> str:
@@ -52,13 +35,14 @@ class LaterDeadline(Change):
         return replace(task, deadline_s=self.until_s)
 
 
-class Deadline(Rule):
+class Deadline(Latest):
     """The end of the work is at most `deadline_s`."""
 
     word: ClassVar[str] = "deadline"
     asked: ClassVar[Mapping[str, str]] = {"ends_by": "deadline"}
-    lifted_late = True
     key = "deadline"
+    lifts = LaterDeadline
+    resource = ("time", "time before the last deadline")
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         deadline = problem.model.ends_by
@@ -75,22 +59,27 @@ class Deadline(Rule):
         return np.asarray(limits.pair_end <= limits.rules.ends_by * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        limits = outlook.limits
-        if not limits.is_timed or too_late(problem, j, float(limits.pair_end[i, j])) is None:
+        return self._by_least_times(outlook.limits, i, j, bound=j, limit="deadline, which is")
+
+    def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
+        return self.late(problem, j, 0.0, float(limits.pair_end[i, j]))
+
+    def latest(self, problem: Question, i: int, j: int) -> float:
+        return float(problem.model.ends_by[j])
+
+    def late(self, problem: Question, j: int, ready: float, end: float) -> str | None:
+        deadline = float(problem.model.ends_by[j])
+        if math.isinf(end) or end <= deadline * (1 + ROUNDING):
             return None
-        free = limits.without(self.word, j)
-        (until,) = moments(problem, float(problem.model.ends_by[j]))
-        late = None if free is None else too_late(problem, j, float(free.pair_end[i, j]))
-        return late or f"what it waits for is too late for its deadline, which is {until}"
+        ends, until = moments(problem, end, deadline)
+        return f"ends at {ends} at the earliest, its deadline is {until}"
 
+    def broken_at(self, tried: Tried) -> str:
+        own = self.late(tried.problem, tried.j, 0.0, min(end for _, _, end in tried.stops))
+        return own or self._others_late(tried) or "at no place in its route are all deadlines kept"
 
-def too_late(problem: Question, j: int, end: float) -> str | None:
-    """That work on a task which ends at a time is too late; None: it is not."""
-    deadline = float(problem.model.ends_by[j])
-    if math.isinf(end) or end <= deadline * (1 + ROUNDING):
-        return None
-    ends, until = moments(problem, end, deadline)
-    return f"ends at {ends} at the earliest, its deadline is {until}"
+    def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
+        return replace(task, deadline_s=None) if task.id in begun else task
 
 
 def is_over(by_s: float) -> str:

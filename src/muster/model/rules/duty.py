@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
-from muster import core
 from muster.mission.model import Robot
 from muster.model.parts import Parts
 from muster.model.rules.rule import (
@@ -19,8 +18,8 @@ from muster.model.rules.rule import (
     Limits,
     Outlook,
     Question,
-    Routes,
     Rule,
+    Tried,
     first_robot,
 )
 from muster.model.rules.times import spans
@@ -75,8 +74,8 @@ class Duty(Rule):
         takes, most = spans(least, longest)
         return f"takes at least {takes} from its start to the end of its route, its longest duty is {most}"
 
-    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
+    def broken_at(self, tried: Tried) -> str:
         return "with it no times keep every robot within its longest duty"
 
-    def lifted(self, problem: Question, i: int) -> Change | None:
+    def lifted(self, problem: Question, i: int, j: int, done: Collection[int]) -> Change | None:
         return LongerDuty() if math.isfinite(problem.model.lasts_most[i]) else None

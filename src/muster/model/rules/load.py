@@ -8,11 +8,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from muster import core
 from muster.mission.goods import by_commodity, shown_amounts
 from muster.mission.model import Robot, Task
 from muster.model.parts import Meter, Parts
-from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot, first_task
+from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Rule, Tried, first_robot, first_task
 
 Amounts = Mapping[str, float]
 
@@ -89,16 +88,16 @@ class Load(Rule):
         refused = self.refusal(problem, i, j)
         if refused is not None:
             return refused
-        other = problem.partners[j]
+        other = problem.model.partners[j]
         if other is None or outlook.limits.usable[i, other]:
             return None
         return f"it cannot do {problem.tasks[other].id}, which {_is_to(problem, j)}"
 
     def concerns(self, problem: Question, j: int) -> bool:
-        other = problem.partners[j]
+        other = problem.model.partners[j]
         return any(problem.tasks[k].load is not None for k in (j, other) if k is not None)
 
-    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
+    def broken_at(self, tried: Tried) -> str:
         return "at every place in its route it would carry more than it can, or put down more than it has"
 
     def change(self, problem: Question, robot: Robot, task: Task) -> MoreRoom | None:

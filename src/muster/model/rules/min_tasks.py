@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
-from muster import core
 from muster.mission.model import Mission, Robot
 from muster.mission.texts.counting import counted
 from muster.model.parts import Parts
-from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Routes, Rule, first_robot, listed
+from muster.model.rules.rule import Bools, Change, Found, Limits, Outlook, Question, Rule, Tried, first_robot, listed
 
 
 @dataclass(frozen=True)
@@ -37,8 +36,8 @@ class FewerTasks(Change):
     def robot(self, robot: Robot) -> Robot:
         return replace(robot, min_tasks=self.enough)
 
-    def narrowed(self, tasks: int) -> Change | None:
-        return replace(self, enough=tasks) if tasks < self.now else None
+    def narrowed(self, found: Found) -> Change | None:
+        return replace(self, enough=found.tasks) if found.tasks < self.now else None
 
 
 class MinTasks(Rule):
@@ -77,9 +76,9 @@ class MinTasks(Rule):
         only = f"and may do only {counted(may, 'task')}" if may < least else "and can never do so many"
         return f"does at least {least} tasks or none, {only}"
 
-    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str:
-        least = problem.model.least_stops
-        short = [{k: len(r) for k, r in enumerate(routes) if 0 < len(r) < least[k]} for routes, _ in places]
+    def broken_at(self, tried: Tried) -> str:
+        problem, least = tried.problem, tried.problem.model.least_stops
+        short = [{k: len(r) for k, r in enumerate(routes) if 0 < len(r) < least[k]} for routes, _ in tried.places]
         said = (
             f"{problem.robots[k].id} would do {counted(n, 'task')}, and does at least {least[k]} or none"
             for k, n in min(short, key=len).items()
@@ -94,6 +93,6 @@ class MinTasks(Rule):
     def too_few(self, problem: Question, i: int, tasks: int) -> bool:
         return 0 < tasks < int(problem.model.least_stops[i])
 
-    def lifted(self, problem: Question, i: int) -> Change | None:
+    def lifted(self, problem: Question, i: int, j: int, done: Collection[int]) -> Change | None:
         least = problem.robots[i].min_tasks
         return FewerTasks(least, 0) if least > 1 else None

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 
+from muster.mission.model import Task
 from muster.model.parts import Parts
 from muster.model.rules.rule import (
     Bools,
@@ -15,16 +17,11 @@ from muster.model.rules.rule import (
     Outlook,
     Question,
     Rule,
+    Tried,
     first_task,
     listed,
 )
 from muster.model.rules.times import rounded
-
-
-def _awaited_lags(problem: Question, j: int) -> list[tuple[float, float]]:
-    """For each task that must be done before task j, also the one whose goods it delivers, the least and most lag."""
-    known = {k: (after, within) for k, after, within in problem.model.gaps(j)}
-    return [known.get(k, (0.0, np.inf)) for k in problem.awaited[j]]
 
 
 class Prerequisite(Rule):
@@ -66,6 +63,17 @@ class Prerequisite(Rule):
         if plan.insertion(i, j) is None:
             return "at every place in its route the prerequisites would wait in a circle"
         return None
+
+    def without_limit(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
+        """With tasks that may begin however long after others."""
+        lags = [{name: replace(lag, within_s=None) for name, lag in task.lags.items()} for task in tasks]
+        return tuple(replace(task, lags=own) for task, own in zip(tasks, lags, strict=True))
+
+    def broken_at(self, tried: Tried) -> str:
+        return "at every place in its route a task would begin longer after its prerequisite than within_s allows"
+
+    def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
+        return task.waiting_for(()) if task.id in begun else task
 
 
 def waits_for(names: Collection[str]) -> str:

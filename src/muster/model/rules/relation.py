@@ -14,6 +14,8 @@ from muster.model.bottleneck import on_some_matching
 from muster.model.parts import Parts
 from muster.model.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_task, listed
 
+_RELATIONS = ("same_robot_as", "other_robot_than", "starts_with")
+
 
 @dataclass(frozen=True)
 class Untied(Change):
@@ -113,6 +115,26 @@ class Relation(Rule):
             if i in plan.members(k):
                 return f"another robot must do {problem.tasks[k].id}, which is in its route"
         return plan.kept_out(self.word, i, j)
+
+    def lifted(self, problem: Question, i: int, j: int, done: Collection[int]) -> Untied | None:
+        """Without its relations to tasks that are done, or begin with it."""
+        names = {problem.tasks[k].id for k in {*done, *problem.model.beginning_with(j)}}
+        task = problem.tasks[j]
+        found = [(key, name) for key in _RELATIONS for name in getattr(task, key) if name in names]
+        found += [
+            (key, other.id)
+            for other in problem.mission.tasks
+            for key in _RELATIONS
+            if other.id in names and task.id in getattr(other, key)
+        ]
+        return Untied(tuple(dict.fromkeys(found))) if found else None
+
+    def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
+        """What began at a time of its own keeps no other to that time; who does it is known."""
+        if task.id not in begun:
+            return replace(task, starts_with=tuple(name for name in task.starts_with if name not in begun))
+        left: Any = {key: tuple(name for name in getattr(task, key) if name not in begun) for key in _RELATIONS}
+        return replace(task, **{**left, "starts_with": ()})
 
     @staticmethod
     def _beside(limits: Limits, j: int, k: int) -> Bools:

@@ -36,19 +36,13 @@ class Question(Protocol):
     @property
     def tasks(self) -> tuple[Task, ...]: ...
     @property
-    def capacity(self) -> Floats: ...
-    @property
     def prerequisites(self) -> list[list[int]]: ...
-    @property
-    def awaited(self) -> list[list[int]]: ...
     @property
     def task_index(self) -> dict[str, int]: ...
     @property
     def kinds(self) -> npt.NDArray[np.int32]: ...
     @property
     def usage_unit(self) -> str: ...
-    @property
-    def partners(self) -> list[int | None]: ...
     @property
     def aboard(self) -> tuple[tuple[int, ...], ...]: ...
     @property
@@ -65,6 +59,10 @@ class Question(Protocol):
 
     def amounts(self, of: Callable[[Task], float]) -> Floats: ...
 
+    def end(self, i: int) -> int: ...
+
+    def travel_seconds(self, i: int, places: Sequence[int], to: Sequence[int]) -> Floats: ...
+
     def holds(self, rule: str) -> bool: ...
 
     def may(self, i: int, j: int) -> bool: ...
@@ -74,6 +72,8 @@ class Question(Protocol):
     def actions_refused(self, i: int) -> frozenset[int]: ...
 
     def no_way_to(self, i: int, j: int) -> str: ...
+
+    def back(self, i: int, end_s: float, j: int) -> float: ...
 
 
 class Limits(Protocol):
@@ -116,6 +116,76 @@ class Limits(Protocol):
     def without(self, word: str, at: int) -> Limits | None: ...
 
 
+@dataclass(frozen=True)
+class Times:
+    """When work on a task begins and ends, and when the route is over of a robot that does it, seconds."""
+
+    begin: float
+    end: float
+    over: float
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a plan comes to in which a robot does a task.
+
+    Parameters
+    ----------
+    problem
+        the plan's.
+    tasks, usage
+        of the robot's route.
+    times
+        of the task and the robot.
+    least
+        times before which no admissible plan has them; None: none are known.
+    """
+
+    problem: Question
+    tasks: int
+    usage: float
+    times: Times
+    least: Times | None = None
+
+
+@dataclass(frozen=True)
+class Tried:
+    """Places in routes at which a robot was to do a task, with what these routes come to."""
+
+    problem: Question
+    i: int
+    j: int
+    places: Sequence[tuple[Routes, core.Inspection]]
+
+    @property
+    def usage(self) -> float:
+        """The least usage of the robot."""
+        return min(found.usages[self.i] for _, found in self.places)
+
+    @property
+    def stops(self) -> list[tuple[float, float, float]]:
+        """When the robot arrives at the task at each place, and work on it begins and ends."""
+        return [stop_of(found, self.i, routes[self.i].index(self.j)) for routes, found in self.places]
+
+    @property
+    def over(self) -> float:
+        """When the robot's route is over at the earliest."""
+        return min(route_over(self.problem, found, self.i, routes[self.i]) for routes, found in self.places)
+
+
+def stop_of(found: core.Inspection, i: int, at: int) -> tuple[float, float, float]:
+    """Arrival, begin and end of a stop of inspected routes that have a schedule."""
+    stops = found.stops
+    assert stops is not None
+    _, arrive, begin, end = stops[i][at]
+    return arrive, begin, end
+
+
+def route_over(problem: Question, found: core.Inspection, i: int, route: Sequence[int]) -> float:
+    """When robot i is at the end of its route, seconds."""
+    return problem.back(i, stop_of(found, i, len(route) - 1)[2], route[-1])
+
+
 class Change:
     """What has to change for a robot to do a task under one rule: the least. Subclasses are frozen dataclasses."""
 
@@ -154,8 +224,8 @@ class Change:
         """Another task of the mission as it would have to be."""
         return other
 
-    def narrowed(self, tasks: int) -> Change | None:
-        """What of it is needed where the robot does so many tasks; None: nothing."""
+    def narrowed(self, found: Found) -> Change | None:
+        """What of it a plan needs that was found with it; None: nothing."""
         return self
 
     @property
@@ -243,6 +313,8 @@ class Rule:
         of the task's team breaks it.
     kept_by_calls
         whether calls at stations may keep a route from breaking it.
+    resource
+        what work takes that robots have only so much of by it: the word of a shortfall, and what it is; None: nothing.
     key, no_change
         of its change in the plain data of a remedy, and what stands there where no change is needed; no key: a robot
         is not changed for it, or not by it alone.
@@ -257,6 +329,7 @@ class Rule:
     of_a_route: ClassVar[bool] = False
     of_the_team: ClassVar[bool] = False
     kept_by_calls: ClassVar[bool] = False
+    resource: ClassVar[tuple[str, str] | None] = None
     key: ClassVar[str | None] = None
     no_change: ClassVar[Any] = None
 
@@ -295,11 +368,37 @@ class Rule:
         """Whether the rule can keep a robot from task j by what the task itself is."""
         return True
 
-    def broken_at(self, problem: Question, i: int, places: Sequence[tuple[Routes, core.Inspection]]) -> str | None:
-        """How routes with one more task for robot i break it, where they break it least; None: by their times."""
-        own = [meter for meter in problem.model.meters if meter.rule == self.word]
-        found = [above_room(problem, own, routes) for routes, _ in places]
-        return min(found, key=lambda one: one[0])[1] if own else None
+    def broken_at(self, tried: Tried) -> str:
+        """How routes with one more task for a robot break it, where they break it least."""
+        own = [meter for meter in tried.problem.model.meters if meter.rule == self.word]
+        found = [above_room(tried.problem, own, routes) for routes, _ in tried.places]
+        if own and found:
+            return min(found, key=lambda one: one[0])[1]
+        return f"at every place in its route it would break the rule {self.word}"
+
+    def without_limit(self, tasks: tuple[Task, ...]) -> tuple[Task, ...] | None:
+        """The tasks with all of it that can leave no place for one; None: with nothing of it, it does not hold."""
+        return None
+
+    def without_end(self, robots: tuple[Robot, ...]) -> tuple[Robot, ...] | None:
+        """The same of robots."""
+        return None
+
+    def late(self, problem: Question, j: int, ready: float, end: float) -> str | None:
+        """That task j is too late which is ready, and ends, at these times at the earliest; None: it is not."""
+        return None
+
+    def over_late(self, problem: Question, i: int, over: float) -> str | None:
+        """That the route of robot i is over too late that is over at this time at the earliest; None: it is not."""
+        return None
+
+    def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
+        """A task without what binds it no more once some, by id, are done or begun by so many robots each."""
+        return task
+
+    def outlasting(self, robot: Robot, end_s: float | None) -> Robot:
+        """The robot as it could be at work until a time; None: however long."""
+        return robot
 
     def never_used(self, mission: Mission, robot: Robot) -> str | None:
         """Why a robot of a mission does nothing, whatever the plan; None if it may do something."""
@@ -309,8 +408,15 @@ class Rule:
         """Whether robot i does not do so few tasks, though it may do more."""
         return False
 
-    def lifted(self, problem: Question, i: int) -> Change | None:
-        """The change of robot i with which it is bound no more; less may do (`narrowed`). None: there is none."""
+    def lifted(self, problem: Question, i: int, j: int, done: Collection[int]) -> Change | None:
+        """The change with which it keeps robot i from task j no more, beside the tasks that are done.
+
+        Such changes are tried one at a time; less may do (`narrowed`). None: there is none.
+        """
+        return None
+
+    def unlimited(self, problem: Question, i: int, j: int) -> Change | None:
+        """The change with which it limits no times of robot i and task j; less may do. None: it limits none."""
         return None
 
     def change(self, problem: Question, robot: Robot, task: Task) -> Change | None:

@@ -4,45 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
 import numpy as np
 
 from muster.mission.model import Robot
 from muster.model.parts import Parts
-from muster.model.rules.rule import (
-    ROUNDING,
-    Bools,
-    Change,
-    Limits,
-    Outlook,
-    Question,
-    Rule,
-    first_robot,
-)
+from muster.model.rules.latest import Later, Latest
+from muster.model.rules.rule import ROUNDING, Bools, Found, Limits, Outlook, Question, Tried, first_robot
 from muster.model.rules.times import known_least, longer, moments
 
 
 @dataclass(frozen=True)
-class LongerShift(Change):
-    """A later end of a robot's shift: `until_s`, None without one; before `at_least_s` no admissible plan is enough.
+class LongerShift(Later):
+    """A later end of a robot's shift, also in words."""
 
-    `said` is the new end in words.
-    """
-
-    available_until_s: float
-    until_s: float | None
-    at_least_s: float | None = None
     said: str = ""
 
-    @property
-    def plain(self) -> dict[str, float | None]:
-        return {name: value for name, value in asdict(self).items() if name != "said"}
+    of = "over"
+    limit_key = "available_until_s"
 
-    @property
-    def seconds(self) -> float:
-        return math.inf if self.until_s is None else self.until_s - self.available_until_s
+    def narrowed(self, found: Found) -> Self | None:
+        later = super().narrowed(found)
+        return later and replace(later, said=moments(found.problem, found.times.over)[0])
 
     @property
     def short(self) -> str:
@@ -56,13 +41,14 @@ class LongerShift(Change):
         return with_end(robot, self.until_s)
 
 
-class Shift(Rule):
+class Shift(Latest):
     """The end of the route is at most `available_until_s`; legs and work are each within one of `shifts_s`, if any."""
 
     word: ClassVar[str] = "shift"
     asked: ClassVar[Mapping[str, str]] = {"over_by": "shift", "spans": "rests"}
-    lifted_late = True
     key = "shift"
+    lifts = LongerShift
+    resource = ("shift", "shift")
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         until, spans = problem.model.over_by, problem.model.spans
@@ -85,28 +71,38 @@ class Shift(Rule):
         return np.asarray(limits.over <= until * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        limits = outlook.limits
-        if not limits.is_timed or beyond(problem, i, float(limits.over[i, j])) is None:
+        return self._by_least_times(outlook.limits, i, j, bound=i, limit="shift, which ends at")
+
+    def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
+        return self.over_late(problem, i, float(limits.over[i, j]))
+
+    def latest(self, problem: Question, i: int, j: int) -> float:
+        return float(problem.model.over_by[i])
+
+    def over_late(self, problem: Question, i: int, over: float) -> str | None:
+        until = float(problem.model.over_by[i])
+        if math.isinf(over) or over <= until * (1 + ROUNDING):
             return None
-        free = limits.without(self.word, i)
-        (until,) = moments(problem, float(problem.model.over_by[i]))
-        late = None if free is None else beyond(problem, i, float(free.over[i, j]))
-        return late or f"what it waits for is too late for its shift, which ends at {until}"
+        back, ends = moments(problem, over, until)
+        return f"its route would end at {back} at the earliest, its shift ends at {ends}"
+
+    def broken_at(self, tried: Tried) -> str:
+        own = self.over_late(tried.problem, tried.i, tried.over)
+        return own or "with it the route of another robot would end after its shift"
+
+    def outlasting(self, robot: Robot, end_s: float | None) -> Robot:
+        if robot.available_until_s is None:
+            return robot
+        return with_end(robot, None if end_s is None else max(robot.available_until_s, end_s))
+
+    def without_end(self, robots: tuple[Robot, ...]) -> tuple[Robot, ...]:
+        return tuple(with_end(robot, None) for robot in robots)
 
 
 def with_end(robot: Robot, until_s: float | None) -> Robot:
     """Return the robot with another end of its only shift, or of its last one."""
     last = tuple((begins, until_s) for begins, _ in robot.shifts_s[-1:])
     return replace(robot, available_until_s=until_s, shifts_s=(*robot.shifts_s[:-1], *last))
-
-
-def beyond(problem: Question, i: int, end: float) -> str | None:
-    """That a route which ends at a time is beyond the robot's shift; None: it is not."""
-    until = float(problem.model.over_by[i])
-    if math.isinf(end) or end <= until * (1 + ROUNDING):
-        return None
-    back, over = moments(problem, end, until)
-    return f"its route would end at {back} at the earliest, its shift ends at {over}"
 
 
 def would_be_back_late(back_s: float, by_s: float) -> str:

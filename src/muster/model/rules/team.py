@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -103,6 +103,16 @@ class Team(Rule):
         allowed = np.array([problem.may(k, j) for k in range(len(problem.robots))], dtype=np.bool_)
         return shortfall(problem, i, j, allowed) or plan.kept_out(self.word, i, j)
 
+    def lifted(self, problem: Question, i: int, j: int, done: Collection[int]) -> MoreRobots | None:
+        """With the robots that a team with robot i in it lacks."""
+        return _missing_robots(problem, i, j, {*problem.task_index, *(robot.id for robot in problem.robots)})
+
+    def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
+        if task.id not in begun:
+            return task
+        robots = begun[task.id] if task.is_for_team else task.robots_needed
+        return replace(task, robots_needed=robots, team=(), needs=None)
+
 
 def in_some_team(problem: Question, j: int, able: Bools) -> Bools:
     """(m,) which of the robots that are able are in some team for a task."""
@@ -165,7 +175,7 @@ def _places(problem: Question, j: int, able: Bools) -> Bools:
     return np.array(rows, dtype=np.bool_)
 
 
-def missing_robots(problem: Question, i: int, j: int, names: set[str]) -> MoreRobots | None:
+def _missing_robots(problem: Question, i: int, j: int, names: set[str]) -> MoreRobots | None:
     """Robots that a team of a task with robot i in it lacks; None: none, or no such robot can be made up."""
     rules, task, robot = problem.model, problem.tasks[j], problem.robots[i]
     able = np.array([problem.may(k, j) for k in range(len(problem.robots))], dtype=np.bool_)

@@ -3,37 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from muster.mission.model import Robot, Task
 from muster.model.parts import Parts
-from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Rule, first_task, listed
+from muster.model.rules.latest import Later, Latest
+from muster.model.rules.rule import Bools, Limits, Outlook, Question, Tried, first_task, listed
 from muster.model.rules.times import known_least, longer, moments, reaches, rounded, span
 
 
 @dataclass(frozen=True)
-class LongerWindow(Change):
-    """A later end of a task's last window.
+class LongerWindow(Later):
+    """A later end of a task's last window."""
 
-    `until_s` is the new end, None without one; with an end before `at_least_s` no admissible plan does the task by the
-    robot, the other changes made.
-    """
-
-    closes_s: float
-    until_s: float | None
-    at_least_s: float | None = None
-
-    @property
-    def plain(self) -> dict[str, float | None]:
-        return asdict(self)
-
-    @property
-    def seconds(self) -> float:
-        return math.inf if self.until_s is None else self.until_s - self.closes_s
+    of = "begin"
+    limit_key = "closes_s"
 
     @property
     def short(self) -> str:
@@ -44,17 +32,16 @@ class LongerWindow(Change):
         return f"{self.short}, until {span(self.until_s or 0.0)}: {known_least(self.until_s, self.at_least_s)}"
 
     def task(self, task: Task, robot: Robot) -> Task:
-        *before, (opens, _) = task.window_s
-        return replace(task, window_s=(*before, (opens, self.until_s)))
+        return _closing(task, self.until_s)
 
 
-class Window(Rule):
+class Window(Latest):
     """The begin of the work is in one of `window_s`. A robot that is too early waits for the next one."""
 
     word: ClassVar[str] = "window"
     asked: ClassVar[Mapping[str, str]] = {"openings": "window"}
-    lifted_late = True
     key = "window"
+    lifts = LongerWindow
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         return {"window": first_task(problem, "window_s", lambda j: problem.model.openings[j])}
@@ -71,33 +58,49 @@ class Window(Rule):
         limits = outlook.limits
         if not limits.is_timed or math.isfinite(limits.pair_begin[i, j]):
             return None
-        own = closed(problem, j, "arrives at", float(limits.arrival[i, j]))
-        return own or _waits_too_long(limits, i, j) or _never_together(problem, j)
+        own = _closed(problem, j, "arrives at", float(limits.arrival[i, j]))
+        waits = self._by_least_times(limits, i, j, bound=j, limit=f"{_which(problem, j)}, which closes at")
+        return own or waits or _never_together(problem, j)
+
+    def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
+        return _closed(problem, j, *reaches(limits, i, j))
+
+    def latest(self, problem: Question, i: int, j: int) -> float:
+        windows = problem.model.openings[j]
+        return windows[-1][1] if windows else math.inf
+
+    def late(self, problem: Question, j: int, ready: float, end: float) -> str | None:
+        return _closed(problem, j, "begins at", ready)
+
+    def broken_at(self, tried: Tried) -> str:
+        arrives, begins, _ = (min(times) for times in zip(*tried.stops, strict=True))
+        own = _closed(tried.problem, tried.j, "arrives at", arrives) or self.late(tried.problem, tried.j, begins, 0.0)
+        return own or self._others_late(tried) or "at no place in its route are all windows kept"
+
+    def without_limit(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
+        return tuple(_closing(task, None) if task.window_s else task for task in tasks)
+
+    def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
+        return replace(task, window_s=()) if task.id in begun else task
 
 
-def closed(problem: Question, j: int, how: str, ready: float) -> str | None:
+def _closing(task: Task, closes_s: float | None) -> Task:
+    """The task with another end of its last window."""
+    *before, (opens, _) = sorted(task.window_s, key=lambda window: window[0])
+    return replace(task, window_s=(*before, (opens, closes_s)))
+
+
+def _closed(problem: Question, j: int, how: str, ready: float) -> str | None:
     """That all windows of a task are closed by a time; None: one is not."""
     windows = problem.model.openings[j]
     if not windows or ready <= windows[-1][1]:
         return None
     at, closes = moments(problem, ready, windows[-1][1])
-    return f"{how} {at} at the earliest, its {_which(windows)} closes at {closes}"
+    return f"{how} {at} at the earliest, its {_which(problem, j)} closes at {closes}"
 
 
-def _waits_too_long(limits: Limits, i: int, j: int) -> str | None:
-    """That the last window of a task is closed when all is there that it waits for; None: it is not."""
-    problem = limits.problem
-    if closed(problem, j, *reaches(limits, i, j)) is None:
-        return None
-    free = limits.without(Window.word, j)
-    late = None if free is None else closed(problem, j, *reaches(free, i, j))
-    windows = problem.model.openings[j]
-    (closes,) = moments(problem, windows[-1][1])
-    return late or f"what it waits for is too late for its {_which(windows)}, which closes at {closes}"
-
-
-def _which(windows: Sequence[tuple[float, float]]) -> str:
-    return "window" if len(windows) == 1 else "last window"
+def _which(problem: Question, j: int) -> str:
+    return "window" if len(problem.model.openings[j]) == 1 else "last window"
 
 
 def _never_together(problem: Question, j: int) -> str:

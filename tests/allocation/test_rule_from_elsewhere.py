@@ -1,0 +1,70 @@
+"""A rule that allocation has never heard of: it plans by the primitives, and gives reasons by the rule's own words."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+import muster
+from muster.allocation.reasons.explanations import unassigned
+from muster.mission.model import Mission, Robot, Task
+from muster.model import problem as compiled
+from muster.model.problem import Problem
+from muster.model.rules import RULES
+from muster.model.rules.rule import Rule
+
+DARK_S = 25.0
+
+
+class Daylight(Rule):
+    """Robots are back before dark."""
+
+    word = "daylight"
+    lifted_late = True
+
+    def compile(self, problem, parts):
+        for i in range(len(problem.robots)):
+            parts.is_over(i, DARK_S)
+
+    def over_late(self, problem, i, over):
+        return None if over <= DARK_S else f"it would be back at {over:g} s, in the dark"
+
+    def broken_at(self, tried):
+        return self.over_late(tried.problem, tried.i, tried.over) or "another robot would be back in the dark"
+
+
+class Unspoken(Daylight):
+    """The same rule without words of its own."""
+
+    broken_at = Rule.broken_at
+
+
+@pytest.fixture
+def problem():
+    robot = Robot(id="r", position=(0, 0), speed_mps=1)
+    tasks = (Task(id="near", position=(10, 0)), Task(id="far", position=(20, 0)))
+    return Problem.compile(Mission(robots=(robot,), tasks=tasks, rules=muster.Rules(return_to_start=True)))
+
+
+@pytest.mark.parametrize(
+    ("rule", "detail"),
+    [
+        (Daylight(), "it would be back at 40 s, in the dark"),
+        (Unspoken(), "at every place in its route it would break the rule daylight"),
+    ],
+)
+def test_it_is_the_reason_why_a_task_is_left_out(monkeypatch, problem, rule, detail):
+    monkeypatch.setattr(compiled, "RULES", (*RULES, rule))
+    assert problem.model.over_by.tolist() == [DARK_S]
+    assert problem.model.word_of("over_by") == "daylight"
+    (left,) = unassigned(problem, [[problem.task_index["near"]]])
+    assert left.task == "far"
+    assert [(reason.reason, reason.detail) for reason in left.reasons] == [("daylight", detail)]
+
+
+def test_where_it_does_not_hold_the_task_fits(monkeypatch, problem):
+    monkeypatch.setattr(compiled, "RULES", (*RULES, Daylight()))
+    free = replace(problem, ignored=("daylight",))
+    assert math.isinf(free.model.over_by[0])
+    (left,) = unassigned(free, [[free.task_index["near"]]])
+    assert left.reasons[0].reason == "not-chosen"
