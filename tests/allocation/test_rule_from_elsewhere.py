@@ -10,7 +10,7 @@ from muster.allocation.reasons.explanations import unassigned
 from muster.mission.model import Mission, Robot, Task
 from muster.model import problem as compiled
 from muster.model.problem import Problem
-from muster.model.rules import RULES
+from muster.model.rules import all_rules
 from muster.model.rules.rule import Rule
 
 DARK_S = 25.0
@@ -54,7 +54,7 @@ def problem():
     ],
 )
 def test_it_is_the_reason_why_a_task_is_left_out(monkeypatch, problem, rule, detail):
-    monkeypatch.setattr(compiled, "RULES", (*RULES, rule))
+    monkeypatch.setattr(compiled, "all_rules", lambda: (*all_rules(), rule))
     assert problem.model.over_by.tolist() == [DARK_S]
     assert problem.model.word_of("over_by") == "daylight"
     (left,) = unassigned(problem, [[problem.task_index["near"]]])
@@ -63,7 +63,7 @@ def test_it_is_the_reason_why_a_task_is_left_out(monkeypatch, problem, rule, det
 
 
 def test_where_it_does_not_hold_the_task_fits(monkeypatch, problem):
-    monkeypatch.setattr(compiled, "RULES", (*RULES, Daylight()))
+    monkeypatch.setattr(compiled, "all_rules", lambda: (*all_rules(), Daylight()))
     free = replace(problem, ignored=("daylight",))
     assert math.isinf(free.model.over_by[0])
     (left,) = unassigned(free, [[free.task_index["near"]]])

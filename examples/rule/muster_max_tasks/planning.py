@@ -21,8 +21,8 @@ class MoreTasks(Change):
     def robot(self, robot):
         return replace(robot, extra={**robot.extra, "max_tasks": self.enough})
 
-    def narrowed(self, tasks):
-        return replace(self, enough=tasks) if tasks > self.now else None
+    def narrowed(self, found):
+        return replace(self, enough=found.tasks) if found.tasks > self.now else None
 
 
 class MaxTasks(Rule):
@@ -36,6 +36,6 @@ class MaxTasks(Rule):
         if min(most) < math.inf:
             parts.meter(Meter.count("tasks", problem.amounts(lambda task: 1), most))
 
-    def lifted(self, problem, i):
+    def lifted(self, problem, i, j, done):
         most = problem.robots[i].keys_of(RobotKeys).max_tasks
         return None if most is None else MoreTasks(most, None)

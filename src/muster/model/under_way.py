@@ -87,14 +87,15 @@ class UnderWay:
         self._names = [task.id for task in self.tasks]
         self._index = {name: j for j, name in enumerate(self._names)}
         self._model = self._compiled(
-            tuple(task.waiting_for(filter(self._index.__contains__, task.prerequisites)) for task in self.tasks)
+            tuple(task.waiting_for(filter(self._index.__contains__, task.prerequisites)) for task in self.tasks),
+            self.mission.robots,
         )
         self._soon_after: dict[int, list[int]] = {}
         for j, gaps in self._model.parts.gaps.items():
             for k in (k for k, (_, most_s) in gaps.items() if most_s < math.inf):
                 self._soon_after.setdefault(k, []).append(j)
 
-    def _compiled(self, tasks: tuple[Task, ...], robots: Sequence[Robot] = ()) -> PlanModel:
+    def _compiled(self, tasks: tuple[Task, ...], robots: Sequence[Robot]) -> PlanModel:
         rules = self.mission.rules
         return Problem(self.mission, rules.objective, tuple(self.ignored), tuple(robots), tasks).model
 
@@ -127,7 +128,11 @@ class UnderWay:
 
     def before(self, task: str) -> dict[str, tuple[float, float]]:
         """The tasks that end before a task begins; how long before that at least, and at most."""
-        return {self._names[k]: gap for k, gap in self._model.parts.gaps.get(self._index[task], {}).items()}
+        j = self._index[task]
+        gaps, pickup = dict(self._model.parts.gaps.get(j, {})), self._model.pickups[j]
+        if pickup >= 0:
+            gaps.setdefault(pickup, (0.0, math.inf))
+        return {self._names[k]: gap for k, gap in gaps.items()}
 
     def gaps(self, task: str) -> dict[str, tuple[float, float]]:
         """The same of those tasks alone for which more is said than the order."""

@@ -89,7 +89,7 @@ def _sum(circuits: Circuits, change: Floats, first: Floats, room: Floats) -> Non
     """What only grows is greatest at the end of a route. Amounts are rounded down to units."""
     unit = _LOAD_UNITS / max(1e-12, float(change.max()), float(np.abs(first).max()))
     for i in circuits.robots:
-        if np.isfinite(room[i]):
+        if room[i] - first[i] < change.sum():
             grows = sum(int(change[j] * unit) * does for (k, j), does in circuits.does.items() if k == i)
             circuits.model.add(grows <= int((room[i] - first[i]) * unit) + 1)
 
