@@ -6,10 +6,10 @@
 #include <limits>
 #include <numbers>
 
-#include "traffic/agent_tree.hpp"
 #include "crowd/braking.hpp"
 #include "crowd/orca.hpp"
 #include "parallel.hpp"
+#include "traffic/agent_tree.hpp"
 
 namespace muster {
 

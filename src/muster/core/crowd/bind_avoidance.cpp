@@ -7,13 +7,13 @@
 
 #include <stdexcept>
 
-#include "traffic/agent_tree.hpp"
+#include "bindings.hpp"
 #include "crowd/approach.hpp"
 #include "crowd/avo.hpp"
-#include "bindings.hpp"
 #include "crowd/hrvo.hpp"
 #include "crowd/orca.hpp"
 #include "crowd/rvo.hpp"
+#include "traffic/agent_tree.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

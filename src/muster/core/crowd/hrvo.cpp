@@ -4,8 +4,8 @@
 #include <limits>
 #include <tuple>
 
-#include "traffic/agent_tree.hpp"
 #include "parallel.hpp"
+#include "traffic/agent_tree.hpp"
 
 namespace muster {
 

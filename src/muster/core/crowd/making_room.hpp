@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "traffic/agent_tree.hpp"
 #include "crowd/crowd_robot.hpp"
+#include "traffic/agent_tree.hpp"
 
 namespace muster {
 

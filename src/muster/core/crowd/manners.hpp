@@ -11,9 +11,9 @@
 
 #include <vector>
 
-#include "traffic/agent_tree.hpp"
 #include "crowd/crowd_robot.hpp"
 #include "crowd/making_room.hpp"
+#include "traffic/agent_tree.hpp"
 
 namespace muster {
 

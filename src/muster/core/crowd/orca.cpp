@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "traffic/agent_tree.hpp"
 #include "parallel.hpp"
+#include "traffic/agent_tree.hpp"
 
 namespace muster {
 

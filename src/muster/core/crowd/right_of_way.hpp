@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "traffic/agent_tree.hpp"
 #include "crowd/upright.hpp"
+#include "traffic/agent_tree.hpp"
 
 namespace muster {
 

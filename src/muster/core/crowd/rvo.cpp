@@ -5,8 +5,8 @@
 #include <numbers>
 #include <tuple>
 
-#include "traffic/agent_tree.hpp"
 #include "parallel.hpp"
+#include "traffic/agent_tree.hpp"
 
 namespace muster {
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "paths/air.hpp"
 #include "parallel.hpp"
+#include "paths/air.hpp"
 
 namespace muster {
 

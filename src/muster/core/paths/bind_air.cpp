@@ -10,9 +10,9 @@
 #include <tuple>
 #include <utility>
 
-#include "paths/air_ways.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "paths/air_ways.hpp"
 #include "signals.hpp"
 
 namespace nb = nanobind;

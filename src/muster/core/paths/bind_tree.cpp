@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "paths/air_ways.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "paths/air_ways.hpp"
 #include "paths/tree.hpp"
 #include "paths/ways.hpp"
 

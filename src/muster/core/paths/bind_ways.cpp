@@ -13,8 +13,8 @@
 #include "bindings.hpp"
 #include "paths/grid_sights.hpp"
 #include "paths/polygon_sights.hpp"
-#include "signals.hpp"
 #include "paths/ways.hpp"
+#include "signals.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -11,9 +11,9 @@
 #include <numbers>
 
 #include "buckets.hpp"
-#include "paths/clearance.hpp"
 #include "heap.hpp"
 #include "infinity.hpp"
+#include "paths/clearance.hpp"
 
 namespace muster {
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "buckets.hpp"
-#include "paths/corner_search.hpp"
 #include "infinity.hpp"
 #include "parallel.hpp"
+#include "paths/corner_search.hpp"
 
 namespace muster {
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "paths/corner_search.hpp"
 #include "parallel.hpp"
+#include "paths/corner_search.hpp"
 #include "paths/sights.hpp"
 
 namespace muster {

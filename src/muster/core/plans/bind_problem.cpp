@@ -90,11 +90,11 @@ void bind_problem(nb::module_& m) {
              const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Indices place_class,
              Numbers table, Indices travel_class, const Openings& openings, Numbers ends_by, Numbers due,
              Numbers over_by, Numbers lasts_most, const Openings& spans, Numbers gap_least, Numbers gap_most,
-             Indices unit, const Parts& parts, Numbers abilities, Numbers needs, const std::vector<std::vector<int>>& exclusive,
-             const std::vector<std::vector<int>>& same_crew, const std::vector<std::vector<int>>& apart,
-             Indices least_stops, Numbers acceleration, Numbers climb, Numbers turn, bool over_map,
-             bool makespan_includes_return, int meters, Numbers load, Numbers pending, Indices pickup,
-             Numbers most_aboard, Numbers load_at_start, Numbers pending_at_start, Numbers energy,
+             Indices unit, const Parts& parts, Numbers abilities, Numbers needs,
+             const std::vector<std::vector<int>>& exclusive, const std::vector<std::vector<int>>& same_crew,
+             const std::vector<std::vector<int>>& apart, Indices least_stops, Numbers acceleration, Numbers climb,
+             Numbers turn, bool over_map, bool makespan_includes_return, int meters, Numbers load, Numbers pending,
+             Indices pickup, Numbers most_aboard, Numbers load_at_start, Numbers pending_at_start, Numbers energy,
              Numbers energy_at_start, const Stations& stations, Flags calls, Numbers waiting, Flags waits) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
@@ -162,11 +162,10 @@ void bind_problem(nb::module_& m) {
           "fixed"_a, "actuation_cost"_a, "work_class"_a, "work_seconds"_a, "time_class"_a, "priority"_a, "kind"_a,
           "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "place_class"_a, "table"_a, "travel_class"_a,
           "openings"_a, "ends_by"_a, "due"_a, "over_by"_a, "lasts_most"_a, "spans"_a, "gap_least"_a, "gap_most"_a,
-          "unit"_a, "parts"_a,
-          "abilities"_a, "needs"_a, "exclusive"_a, "same_crew"_a, "apart"_a, "least_stops"_a, "acceleration"_a,
-          "climb"_a, "turn"_a, "over_map"_a, "makespan_includes_return"_a, "meters"_a, "load"_a, "pending"_a,
-          "pickup"_a, "most_aboard"_a, "load_at_start"_a, "pending_at_start"_a, "energy"_a, "energy_at_start"_a,
-          "stations"_a, "calls"_a, "waiting"_a, "waits"_a,
+          "unit"_a, "parts"_a, "abilities"_a, "needs"_a, "exclusive"_a, "same_crew"_a, "apart"_a, "least_stops"_a,
+          "acceleration"_a, "climb"_a, "turn"_a, "over_map"_a, "makespan_includes_return"_a, "meters"_a, "load"_a,
+          "pending"_a, "pickup"_a, "most_aboard"_a, "load_at_start"_a, "pending_at_start"_a, "energy"_a,
+          "energy_at_start"_a, "stations"_a, "calls"_a, "waiting"_a, "waits"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
           "`time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, "

@@ -11,8 +11,8 @@ constexpr int kMostDepartures = 100;  // of a route that are tried
 
 }  // namespace
 
-// The first time from `earliest` on that the openings of a unit allow, and from which a robot can work so long without a
-// rest.
+// The first time from `earliest` on that the openings of a unit allow, and from which a robot can work so long without
+// a rest.
 double Placement::open_to(int unit, int robot, double earliest, double work) const {
   double begin = timeline_.open(unit, earliest);
   while (problem_.rests(robot) && begin < kNever) {

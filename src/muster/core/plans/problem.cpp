@@ -280,7 +280,8 @@ void Problem::find_twins() {
   twins_.resize(robots_);
   for (int robot = 0; robot < robots_; ++robot) {
     std::vector<double> key{capacity(robot), available_from(robot), over_by(robot), lasts_most(robot)};
-    for (const Opening& span : has_spans() ? data_.spans[robot] : Spans()) key.insert(key.end(), {span.open, span.close});
+    for (const Opening& span : has_spans() ? data_.spans[robot] : Spans())
+      key.insert(key.end(), {span.open, span.close});
     key.insert(key.end(), {must_end(robot) ? 1.0 : 0.0, static_cast<double>(fixed(robot)),
                            static_cast<double>(least_stops(robot))});
     for (int axis = 0; axis < 3; ++axis) key.insert(key.end(), {entry(start(robot), axis), entry(end(robot), axis)});
@@ -339,8 +340,8 @@ void Problem::find_units() {
     tasks_of_unit_.values.insert(tasks_of_unit_.values.end(), row.begin(), row.end());
     tasks_of_unit_.first.push_back(static_cast<int>(tasks_of_unit_.values.size()));
   }
-  timed_ = has_time_limits() || has_lasts_most() || !data_.gap_least.empty() || !data_.gap_most.empty() || !data_.unit.empty() ||
-           !data_.parts.empty() || !data_.needs.empty() || !data_.same_crew.values.empty() ||
+  timed_ = has_time_limits() || has_lasts_most() || !data_.gap_least.empty() || !data_.gap_most.empty() ||
+           !data_.unit.empty() || !data_.parts.empty() || !data_.needs.empty() || !data_.same_crew.values.empty() ||
            !data_.apart.values.empty() || has_exclusive() || has_least_stops() || data_.meters > 0 ||
            !data_.energy.empty() || data_.objective == Objective::lateness ||
            (data_.makespan_includes_return && data_.objective == Objective::makespan);

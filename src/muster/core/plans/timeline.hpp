@@ -230,7 +230,7 @@ class Timeline {
   bool looks_back_;
   Arcs before_, behind_;       // by unit: prerequisites, dependants
   std::vector<Visit> visits_;  // starts, ends, then those of tasks
-  std::vector<WayIn> ways_;      // by visit, where robots rest: that with calls at stations, else empty
+  std::vector<WayIn> ways_;    // by visit, where robots rest: that with calls at stations, else empty
   std::vector<int> free_;
   std::vector<std::vector<int>> routes_;
   std::vector<Node> nodes_;

@@ -85,8 +85,7 @@ void Placement::try_pickup_at(int robot, int at, int pickup, int delivery) {
   const Visit &last = timeline_.stop(robot, at), &next = timeline_.stop(robot, at + 1);
   Walk walk{robot, pickup, delivery, at, pickup, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   const double there = problem_.arrives(robot, leave(robot, at), problem_.travel_time(robot, last.place, pickup));
-  walk.pickup_begin =
-      open_to(problem_.unit(pickup), robot, std::max(ready_, there), problem_.work_time(robot, pickup));
+  walk.pickup_begin = open_to(problem_.unit(pickup), robot, std::max(ready_, there), problem_.work_time(robot, pickup));
   if (!timeline_.in_time(walk.pickup_begin, latest_)) return;
   walk.time = walk.pickup_end = walk.pickup_begin + problem_.work_time(robot, pickup);
   // The way there; what is left out of the route as it was, and the way on, follow with the delivery.
@@ -169,8 +168,7 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
   };
   const double in = problem_.travel_time(robot, walk.place, delivery), work = problem_.work_time(robot, delivery);
   const double out = seconds(delivery, next);
-  const double arrive =
-      std::max({second_ready_, walk.pickup_end + after_, problem_.arrives(robot, walk.time, in)});
+  const double arrive = std::max({second_ready_, walk.pickup_end + after_, problem_.arrives(robot, walk.time, in)});
   const double begin = open_to(problem_.unit(delivery), robot, arrive, work);
   if (!timeline_.in_time(begin, second_latest_)) return;
   // A pick-up that would end too long before its delivery begins later, if it may.

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "traffic/directed_graph.hpp"
 #include "paths/lattice.hpp"
+#include "traffic/directed_graph.hpp"
 
 namespace muster {
 

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "traffic/annotated_roadmap.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "traffic/annotated_roadmap.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "random.hpp"
 #include "traffic/directed_graph.hpp"
 #include "traffic/lacam.hpp"
-#include "random.hpp"
 
 namespace muster {
 

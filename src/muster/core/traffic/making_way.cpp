@@ -11,9 +11,9 @@ namespace muster {
 namespace {
 
 constexpr std::size_t kMostWaysOut = 6;  // out of the way, tried one after another
-constexpr int kMostPoints = 64;       // looked at for them
-constexpr double kAside = 4;          // paces that it is worth to get off the way of who pushes, not only ahead of it
-constexpr int kPatientRounds = 8;     // rounds after which somebody is sent away who could make way
+constexpr int kMostPoints = 64;          // looked at for them
+constexpr double kAside = 4;       // paces that it is worth to get off the way of who pushes, not only ahead of it
+constexpr int kPatientRounds = 8;  // rounds after which somebody is sent away who could make way
 
 }  // namespace
 

@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "traffic/lacam.hpp"
 #include "random.hpp"
+#include "traffic/lacam.hpp"
 
 namespace muster {
 

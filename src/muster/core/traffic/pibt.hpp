@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "traffic/directed_graph.hpp"
 #include "random.hpp"
+#include "traffic/directed_graph.hpp"
 
 namespace muster {
 

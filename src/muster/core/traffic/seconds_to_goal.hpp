@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "traffic/annotated_roadmap.hpp"
 #include "heap.hpp"
+#include "traffic/annotated_roadmap.hpp"
 
 namespace muster {
 

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "random.hpp"
 #include "traffic/annotated_roadmap.hpp"
 #include "traffic/lacam.hpp"
-#include "random.hpp"
 
 namespace muster {
 
