@@ -1,10 +1,10 @@
-"""Refuses features that this version can neither plan nor judge yet, and rules that it can judge or plan alone."""
+"""Refuses features that this version can neither plan nor judge yet, and rules that it cannot carry out yet."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
-from itertools import chain, product
+from collections.abc import Iterable, Iterator
+from itertools import chain
 
 from muster.mission.errors import NotSupportedError
 from muster.mission.goods import by_commodity
@@ -20,30 +20,7 @@ _STRETCH = 1e7  # an observer stands no farther away than a million times what i
 
 
 def require_supported(mission: Mission) -> None:
-    """Refuse a mission that asks for more than this version can plan.
-
-    Raises
-    ------
-    NotSupportedError
-        for rules that only the judge knows yet, and for all that `require_judged` refuses.
-    """
-    _refuse(mission, chain(_unsupported(mission), _unknown(mission, {"planned": "planning"})))
-
-
-def require_carried_out(mission: Mission) -> None:
-    """Refuse a mission that asks for more than this version can carry out.
-
-    Raises
-    ------
-    NotSupportedError
-        for rules that runs do not know yet, and for all that `require_supported` refuses.
-    """
-    require_supported(mission)
-    _refuse(mission, _unknown(mission, {"carried_out": "carrying out"}))
-
-
-def require_judged(mission: Mission) -> None:
-    """Refuse a mission that asks for more than this version can judge.
+    """Refuse a mission that asks for more than this version can plan and judge.
 
     Raises
     ------
@@ -54,21 +31,30 @@ def require_judged(mission: Mission) -> None:
     _refuse(mission, _unsupported(mission))
 
 
+def require_carried_out(mission: Mission) -> None:
+    """Refuse a mission that asks for more than this version can carry out.
+
+    Raises
+    ------
+    NotSupportedError
+        for rules that runs do not know yet, and for all that `require_supported` refuses.
+    """
+    _refuse(mission, chain(_unsupported(mission), _not_carried_out(mission)))
+
+
 def _refuse(mission: Mission, faults: Iterable[Fault]) -> None:
     found = findings(faults, mission.source)
     if found:
         raise NotSupportedError(found)
 
 
-def _unknown(mission: Mission, to: Mapping[str, str]) -> Iterator[Fault]:
-    """Rules that a part of this version does not know, by the word for that in the keys, and its name."""
+def _not_carried_out(mission: Mission) -> Iterator[Fault]:
     stations = ((("stations", k), station) for k, station in enumerate(mission.stations))
     records: Iterable[tuple[Path, object]] = chain(all_robots(mission), all_work(mission), stations)
     for path, one in records:
-        for f, (word, name) in product(stated_rules(one), to.items()):
-            if not f.metadata.get(word, True):
-                expected = f"nothing here yet: {name} does not know this rule"
-                yield Fault((*path, f.name), shown(plain(getattr(one, f.name))), expected)
+        for f in (f for f in stated_rules(one) if not f.metadata.get("carried_out", True)):
+            expected = "nothing here yet: carrying out does not know this rule"
+            yield Fault((*path, f.name), shown(plain(getattr(one, f.name))), expected)
 
 
 def _unsupported(mission: Mission) -> Iterator[Fault]:

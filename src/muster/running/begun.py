@@ -50,7 +50,11 @@ class Begun:
         return {**self.bodies, "time_s": self.time_s}
 
     def standing(self, mission: Mission) -> Mission:
-        """Return a mission with all robots that have joined, each of which starts where its body stands."""
+        """Return a mission with all robots that have joined, each of which starts where its body stands.
+
+        What has happened is no event any more; tasks that came by it are there, as later events may name them.
+        """
         robots = tuple(standing(known.robot, self.bodies) for known in self.state.robots.values())
         left = tuple(event for event in mission.events if event.at_s > self.bodies["time_s"] + 1e-9)
-        return replace(mission, robots=robots, events=left)
+        came = (event.new_task for event in mission.events if event not in left and event.new_task is not None)
+        return replace(mission, robots=robots, tasks=(*mission.tasks, *came), events=left)

@@ -10,7 +10,7 @@ from muster.mission.ignorable_rules import ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Task
 from muster.mission.objectives import lateness, objective_values
 from muster.mission.plan import Plan
-from muster.mission.supported_features import require_judged
+from muster.mission.supported_features import require_supported
 from muster.mission.system.garbage import collector_paused
 from muster.mission.value_types import shown
 from muster.verification.book import book_faults
@@ -48,13 +48,13 @@ def verify(mission: Mission, plan: Plan, ignore: str | Collection[str] = (), obj
     Raises
     ------
     NotSupportedError
-        if the mission asks for what is not supported yet (see `require_judged`).
+        if the mission asks for what is not supported yet (see `require_supported`).
     MissionError, MissingExtraError
         for travel over a map: if the map is wrong, or the extra that reads maps is absent.
     ParameterError
         for an unknown objective or rule.
     """
-    require_judged(mission)
+    require_supported(mission)
     ignored = ignored_rules(ignore)
     objective = mission.rules.objective if objective is None else objective
     if objective not in OBJECTIVES:

@@ -10,10 +10,10 @@ from muster.mission.model import Mission, Task
 from muster.model.problem import Problem
 from muster_team.knowledge.epoch_base import joint_among
 
-AGREED = FOR_GOOD - {"load", "battery", "rests", "duty"}
+AGREED = FOR_GOOD - {"load", "battery", "rests", "duty", "either-or"}
 """What the auction agrees on: without a centre nobody shares out the slots of stations, or knows what lies where.
 
-Nor do robots agree on a begin that their rests allow, or leave late for each other.
+Nor do robots agree on a begin that their rests allow, leave late for each other, or drop what is done in another way.
 """
 
 

@@ -47,6 +47,13 @@ def requests(mission):
     return asked.map(lambda asked: [*sorted(asked, key=lambda one: one[0]), (1e9, "resume", {})])
 
 
+def test_what_comes_may_wait_for_what_came_before_the_crash(monkeypatch):
+    monkeypatch.setattr(checkpoints, "MOST_ENTRIES", 5)
+    mission = disturbed_mission(360)
+    plan = muster.solve(mission, iterations=20)
+    require_whole(performed_with_crashes(mission, plan, [(1e9, "resume", {})], [22]), mission)
+
+
 @settings(max_examples=4)
 @given(st.data())
 def test_killed_anywhere_and_resumed_each_task_is_accounted_for_once(data):
