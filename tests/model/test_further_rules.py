@@ -5,6 +5,7 @@ import pytest
 import muster
 from muster import Mission, Robot, Rules, Task
 from muster.allocation.exact import solve_exactly
+from muster.allocation.remedies.conflicts import Together, together
 from muster.mission.model import Battery, Station
 from muster.model.problem import Problem
 from muster.planning.judging import admits
@@ -57,8 +58,23 @@ def test_the_other_alternative_is_left_out_for_a_reason():
     assert [(one.reason, one.detail) for one in out.reasons] == [("either-or", "near is done in its place")]
 
 
+def test_check_finds_a_plan_that_does_one_of_two_alternatives():
+    """Both at once would be more work than there is time for."""
+    mission = alternatives()
+    robots = (Robot(id="r", position=(0, 0), available_until_s=14),)
+    for shift, found in ((robots, Together()), (mission.robots, Together())):
+        problem = Problem.compile(Mission(rules=RULES, robots=shift, tasks=mission.tasks))
+        assert together(problem, admits) == found
+
+
 def test_without_the_rule_both_are_done():
     assert len(done(muster.solve(alternatives(), "greedy", ignore=("either-or",)))) == 3
+
+
+def test_the_quick_bound_does_not_count_both_alternatives():
+    plan = muster.solve(alternatives(), "search", iterations=50, bound="quick")
+    assert plan.complete
+    assert plan.lower_bound == 0
 
 
 def test_the_exact_program_keeps_alternatives():

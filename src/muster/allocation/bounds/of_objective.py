@@ -31,6 +31,7 @@ _WEIGHED, _SHARE, _FAR = "a weighed share", "an even share", "the tasks far away
 _LEAST_WAYS, _IN_TURN, _CRITICAL = "the least way to each task", "tasks in turn", "the critical path"
 _FORESTS, _PATHS = "forests of beginnings", "paths by the number of tasks behind"
 _NO_TASKS, _NOBODY = "no tasks", "a task that nobody can do"
+_ALTERNATIVES = "alternatives"
 WHY = {
     _TREES: f"starts and tasks joined by routes are spanning trees, and every task has two neighbours ({_HELD_KARP})",
     _FARTHEST: "some robot must get to it, do it and go to its end, by the shortest way (Dijkstra, Num. Math. 1, 1959)",
@@ -48,6 +49,7 @@ WHY = {
     " (Kelley and Walker, Eastern Joint Computer Conference, 1959)",
     _NO_TASKS: "there is nothing to do",
     _NOBODY: "no plan does it",
+    _ALTERNATIVES: "quick bounds are of plans that do all tasks, and these exclude each other",
 }
 """What each argument says, and whose it is."""
 
@@ -97,6 +99,8 @@ def best_bound(problem: Problem, due: Callable[[], bool] = never) -> Bound:
 def _best_bound(problem: Problem, due: Callable[[], bool]) -> Bound:
     if not problem.tasks:
         return Bound(0.0, (_NO_TASKS,))
+    if problem.model.parts.exclusive:
+        return Bound(0.0, (_ALTERNATIVES,))
     least = least_usages(problem)
     usable = usable_pairs(problem, least)
     if not usable.any(axis=0).all():

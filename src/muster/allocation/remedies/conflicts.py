@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from muster.allocation.allocator import Routes
 from muster.allocation.bounds.feasibility import impossible
 from muster.allocation.bounds.subset_times import tied_pairs
 from muster.allocation.bounds.usage_bounds import UsageBounds
@@ -75,19 +76,18 @@ def together(problem: Problem, judge: Judge, *, time_limit: float = 2.0, clock: 
 
     if least_seconds(problem) > time_limit + _OVERTIME_S:
         return Together(unknown=True)
-    lost = {item.task for item in impossible(problem)}
-    tasks = [j for j, task in enumerate(problem.tasks) if task.id not in lost]
-    bounds = UsageBounds(problem)
-    if short := shortfalls(problem, tasks, bounds):
-        proven = _proven(bounds, tasks, (), left)
+    tasks = _possible(problem)
+    sure, bounds = _in_every_plan(problem, tasks), UsageBounds(problem)
+    if short := shortfalls(problem, sure, bounds):
+        proven = _proven(bounds, sure, (), left)
         return Together(None if proven is None else _minimal(bounds, proven, judge, left, clock), shortfalls=short)
     for seed in itertools.count():
         share = left() if seed > _BEFORE_PROOFS else left() / 3
         routes = attempt(problem, tasks, seed=seed, time_limit=share, clock=clock)
-        if does_all(problem, routes, tasks, judge):
+        if does_all(problem, routes, _one_of_each(problem, tasks, routes), judge):
             return Together()
         if seed == _BEFORE_PROOFS:
-            proven = _proven(bounds, tasks, set(tasks).difference(*routes), left)
+            proven = _proven(bounds, sure, set(sure).difference(*routes), left)
             if proven is not None:
                 return Together(_minimal(bounds, proven, judge, left, clock))
         if left() == 0.0:
@@ -99,9 +99,25 @@ def without_search(problem: Problem) -> Together:
     """Return what sums of work alone prove, at once; in a very large problem that is not looked at."""
     if len(problem.robots) * len(problem.tasks) > _MOST_PAIRS:
         return Together(unknown=True)
-    lost = {item.task for item in impossible(problem)}
-    short = shortfalls(problem, [j for j, task in enumerate(problem.tasks) if task.id not in lost])
+    short = shortfalls(problem, _in_every_plan(problem, _possible(problem)))
     return Together(unknown=not short, shortfalls=short)
+
+
+def _possible(problem: Problem) -> list[int]:
+    """The tasks of which none is known to be impossible."""
+    lost = {item.task for item in impossible(problem)}
+    return [j for j, task in enumerate(problem.tasks) if task.id not in lost]
+
+
+def _in_every_plan(problem: Problem, tasks: Sequence[int]) -> list[int]:
+    """Those of the tasks in whose place no other can be done."""
+    return [j for j in tasks if not problem.model.exclusive[j]]
+
+
+def _one_of_each(problem: Problem, tasks: Sequence[int], routes: Routes) -> list[int]:
+    """The tasks without those in whose place the routes do another."""
+    done = {j for route in routes for j in route}
+    return [j for j in tasks if not done.intersection(problem.model.exclusive[j])]
 
 
 def _proven(
