@@ -45,10 +45,20 @@ export class MissionState {
 
   add(task) {
     const names = [task.starts_with ?? []].flat(); // a mission file has one name bare
-    const late = names.some((name) => this.tasks.get(name)?.isBegunOrOver);
     const known = this.tasks.get(task.id) ?? new Task();
-    const place = three(task.position);
-    this.tasks.set(task.id, Object.assign(known, task, { place, starts_with: late ? [] : names }));
+    this.tasks.set(task.id, Object.assign(known, task, { place: three(task.position), starts_with: names }));
+    this.units.clear();
+    if (names.length) this.tieApart(known);
+  }
+
+  // One that comes too late to begin with another is tied to none: no other waits for it.
+  tieApart(task) {
+    const others = this.unit(task.id).filter((name) => name !== task.id);
+    if (!others.some((name) => this.tasks.get(name)?.isBegunOrOver)) return;
+    task.starts_with = task.starts_with.filter((name) => !others.includes(name));
+    for (const other of others.map((name) => this.tasks.get(name))) {
+      other.starts_with = other.starts_with.filter((name) => name !== task.id);
+    }
     this.units.clear();
   }
 
