@@ -68,3 +68,23 @@ def test_where_it_does_not_hold_the_task_fits(monkeypatch, problem):
     assert math.isinf(free.model.over_by[0])
     (left,) = unassigned(free, [[free.task_index["near"]]])
     assert left.reasons[0].reason == "not-chosen"
+
+
+@pytest.mark.parametrize(
+    ("give", "word"),
+    [
+        (lambda parts: parts.lasts(0, 9.0), "duty"),
+        (lambda parts: parts.rests(0, [(0, 9)]), "rests"),
+        (lambda parts: parts.follows(1, 0, least_s=2.0), "lag"),
+        (lambda parts: parts.follows(1, 0), None),
+    ],
+)
+def test_what_an_allocator_is_asked_for_follows_from_the_primitives(monkeypatch, problem, give, word):
+    class Elsewhere(Rule):
+        word = "elsewhere"
+
+        def compile(self, problem, parts):
+            give(parts)
+
+    monkeypatch.setattr(compiled, "all_rules", lambda: (*all_rules(), Elsewhere()))
+    assert set(problem.asked) == ({word} - {None})

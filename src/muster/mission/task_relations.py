@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 from operator import attrgetter
@@ -30,10 +30,16 @@ def relation_faults(mission: MissionData) -> Iterator[Fault]:
 
 def tied_by(relation: str, tasks: Sequence[Task]) -> list[int]:
     """By task the number of the first task that a relation ties it to, directly or through others; else its own."""
-    first = list(range(len(tasks)))
     if not any(map(attrgetter(relation), tasks)):
-        return first
+        return list(range(len(tasks)))
     index = {t.id: k for k, t in reversed(list(enumerate(tasks)))}
+    named = ((k, name) for k, task in enumerate(tasks) for name in getattr(task, relation))
+    return joined(((k, index[name]) for k, name in named if name in index), len(tasks))
+
+
+def joined(pairs: Iterable[tuple[int, int]], size: int) -> list[int]:
+    """For each of so many things the first one that pairs join it to, directly or through others; else itself."""
+    first = list(range(size))
 
     def found(k: int) -> int:
         while first[k] != k:
@@ -41,12 +47,10 @@ def tied_by(relation: str, tasks: Sequence[Task]) -> list[int]:
             k = first[k]
         return k
 
-    for k, task in enumerate(tasks):
-        for name in getattr(task, relation):
-            if name in index:
-                low, high = sorted((found(k), found(index[name])))
-                first[high] = low
-    return [found(k) for k in range(len(tasks))]
+    for one, other in pairs:
+        low, high = sorted((found(one), found(other)))
+        first[high] = low
+    return [found(k) for k in range(size)]
 
 
 def units_of(tasks: Collection[Task]) -> dict[str, tuple[str, ...]]:

@@ -101,6 +101,7 @@ class Parts:
     lasts_most: dict[int, float] = field(default_factory=dict)
     spans: dict[int, Openings] = field(default_factory=dict)
     gaps: dict[int, dict[int, tuple[float, float]]] = field(default_factory=dict)
+    bounded: set[tuple[int, int]] = field(default_factory=set)  # gaps of which more is said than the order
     together: list[tuple[int, int]] = field(default_factory=list)
     same_crew: dict[int, set[int]] = field(default_factory=dict)
     apart: dict[int, set[int]] = field(default_factory=dict)
@@ -113,22 +114,14 @@ class Parts:
     least_stops: dict[int, int] = field(default_factory=dict)
     meters: list[Meter] = field(default_factory=list)
     energy: dict[int, tuple[float, float]] = field(default_factory=dict)
-    given_by: dict[str, str] = field(
-        default_factory=dict
-    )  # of kinds of primitives the word of the first rule that gave some
     rule: str = ""  # the word of the rule that contributes now; empty: none
     free: set[int] = field(default_factory=set)  # robots, or tasks, that the rule which contributes now does not bind
     words: dict[str, str] = field(default_factory=dict)  # by primitive, of the first rule that contributed any
-
-    def _given(self, *kinds: str) -> None:
-        for kind in kinds if self.rule else ():
-            self.given_by.setdefault(kind, self.rule)
 
     def opens(self, j: int, spans: Iterable[tuple[float, float | None]]) -> None:
         """Task j begins in one of these spans."""
         if j in self.free:
             return
-        self._given("openings")
         own = sorted((opens, math.inf if closes is None else closes) for opens, closes in spans)
         self.openings[j] = _common(self.openings[j], own) if j in self.openings else own
 
@@ -136,14 +129,12 @@ class Parts:
         """Task j ends by a time."""
         if j in self.free:
             return
-        self._given("ends_by")
         self.ends_by[j] = min(latest_s, self.ends_by.get(j, math.inf))
 
     def is_over(self, i: int, latest_s: float) -> None:
         """The route of robot i, its way to the end included, is over by a time."""
         if i in self.free:
             return
-        self._given("over_by")
         self.over_by[i] = min(latest_s, self.over_by.get(i, math.inf))
 
     def lasts(self, i: int, most_s: float) -> None:
@@ -161,28 +152,25 @@ class Parts:
 
     def follows(self, j: int, before: int, least_s: float = 0.0, most_s: float = math.inf) -> None:
         """Task j is done only if the one before it is, and begins so long after that ends, at least and at most."""
-        self._given(*(("gaps",) if least_s > 0 or most_s < math.inf else ()))
+        if least_s > 0 or most_s < math.inf:
+            self.bounded.add((before, j))
         least, most = self.gaps.setdefault(j, {}).get(before, (0.0, math.inf))
         self.gaps[j][before] = max(least, least_s), min(most, most_s)
 
     def begin_together(self, j: int, k: int) -> None:
         """Both tasks are done by different robots, beginning at one moment, or neither is."""
-        self._given("together")
         self.together.append((j, k))
 
     def by_one_crew(self, j: int, k: int) -> None:
         """The same robots do both, if both are done."""
-        self._given("same_crew")
         _both(self.same_crew, j, k)
 
     def by_others(self, j: int, k: int) -> None:
         """No robot does both."""
-        self._given("apart")
         _both(self.apart, j, k)
 
     def exclude(self, j: int, k: int) -> None:
         """At most one of the tasks is done."""
-        self._given("exclusive")
         _both(self.exclusive, j, k)
 
     def keep_away(self, i: int, station: int) -> None:
@@ -191,12 +179,10 @@ class Parts:
 
     def seat(self, j: int, seats: Seats) -> None:
         """So many robots of each sort do task j, at once."""
-        self._given("seats")
         self.seats[j] = seats
 
     def sum_up(self, j: int, name: str, needed: float, able: Floats) -> None:
         """What the robots that do task j are able to do, (m,), sums up to at least so much."""
-        self._given("sums")
         self.sums.setdefault(j, {})[name] = needed, able
 
     def deliver(self, j: int, pickup: int) -> None:
@@ -209,17 +195,14 @@ class Parts:
 
     def stops(self, i: int, least: int) -> None:
         """Robot i does no task, or at least so many."""
-        self._given("least_stops")
         self.least_stops[i] = max(least, self.least_stops.get(i, 0))
 
     def meter(self, meter: Meter) -> None:
         """A quantity stays between 0 and the robot's room for it."""
-        self._given("meters")
         self.meters.append(replace(meter, rule=self.rule))
 
     def has_energy(self, i: int, room: float, at_start: float) -> None:
         """Robot i has energy for so much usage at most, and at first; stations give it more."""
-        self._given("energy")
         self.energy[i] = room, at_start
 
     def named(self, word: str) -> None:

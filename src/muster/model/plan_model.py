@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from muster.mission.task_relations import joined
 from muster.mission.values.arrays import Bools, Floats, Indices
 from muster.model.parts import Gap, Meter, Openings, Parts, Seats, Service
 
@@ -156,7 +157,7 @@ class PlanModel:
     def units(self) -> list[list[int]]:
         """The tasks in sets that begin together."""
         members: dict[int, list[int]] = {}
-        for j, first in enumerate(_joined(self.parts.together, self.tasks)):
+        for j, first in enumerate(joined(self.parts.together, self.tasks)):
             members.setdefault(first, []).append(j)
         return list(members.values())
 
@@ -189,7 +190,7 @@ class PlanModel:
     def most_done(self) -> int:
         """How many tasks a plan does at most: of those that exclude each other one."""
         pairs = [(j, k) for j, others in self.parts.exclusive.items() for k in others]
-        return len(set(_joined(pairs, self.tasks))) if pairs else self.tasks
+        return len(set(joined(pairs, self.tasks))) if pairs else self.tasks
 
     def may_call(self, i: int, station: int) -> bool:
         """Whether a robot may call at a station."""
@@ -273,22 +274,6 @@ def _filled(known: Mapping[int, float], size: int, otherwise: float) -> Floats:
     for k, value in known.items():
         values[k] = value
     return values
-
-
-def _joined(pairs: Sequence[tuple[int, int]], size: int) -> list[int]:
-    """For each of so many things the first one that pairs join it to, directly or through others; else itself."""
-    first = list(range(size))
-
-    def found(k: int) -> int:
-        while first[k] != k:
-            first[k] = first[first[k]]
-            k = first[k]
-        return k
-
-    for j, k in pairs:
-        a, b = sorted((found(j), found(k)))
-        first[b] = a
-    return [found(k) for k in range(size)]
 
 
 def _fewest(least: float, able: Floats) -> int:

@@ -28,7 +28,7 @@ class Prerequisite(Rule):
     """All prerequisites of a task are in the plan, and can be done before it."""
 
     word: ClassVar[str] = "prerequisite"
-    asked: ClassVar[Mapping[str, str]] = {"gaps": "lag"}
+    asked: ClassVar[Mapping[str, str]] = {"bounded": "lag"}
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         lags = problem.model.gaps
