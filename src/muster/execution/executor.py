@@ -150,13 +150,11 @@ class Executor:
             self.crew,
             self._beginning,
             self._capacity,
-            plan_motion,
-            way,
+            self._forecast,
             self.emit,
             self._ask,
             peers,
         )
-        self._dispatch.leaves_s = self._forecast.leaves_s
         self._dispatch.service = StationService(
             self.stations, self.ledger, self.goods, self._dispatch.way, self.emit, self._ask
         )

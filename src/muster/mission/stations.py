@@ -60,7 +60,6 @@ class Station(Checked):
         "ids of the only robots that may call there",
         default=None,
         rule="lock",
-        carried_out=False,
     )
 
     @property

@@ -43,6 +43,10 @@ class PlanModel:
         """The word of the rule that gives one of these parts, by which reasons name it; empty: none does."""
         return next((self.parts.words[name] for name in primitives if name in self.parts.words), "")
 
+    def giver(self, primitive: str, at: object) -> str:
+        """The word of the rule that limits a robot or task by a primitive."""
+        return self.parts.givers.get((primitive, at)) or self.word_of(primitive)
+
     @property
     def tasks(self) -> int:
         return self.parts.tasks

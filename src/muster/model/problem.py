@@ -24,7 +24,7 @@ from muster.mission.value_types import shown
 from muster.model.core_arrays import core_arrays
 from muster.model.lengths import Measured
 from muster.model.measured_energy import Drains, EnergyLeft
-from muster.model.parts import Parts, Service
+from muster.model.parts import Begun, Parts, Service
 from muster.model.plan_model import PlanModel
 from muster.model.rules import Rule, all_rules
 from muster.model.subproblem import cut_down
@@ -86,6 +86,7 @@ class Problem:
     waiting: Waiting = NO_WAITING  # that is expected on ways
     freed: frozenset[tuple[str, int]] = frozenset()  # words of rules, and the robots or tasks that they do not bind
     past: Mapping[str, tuple[Task, ...]] | None = None  # of tasks that stand for what was done, that; None: it begins
+    begun: tuple[Begun, ...] = ()  # for each robot of a mission under way; empty: it begins
     sooner: tuple[float, ...] = ()  # for each task when it must have ended, beside what rules say; empty: none
 
     @classmethod
@@ -139,6 +140,7 @@ class Problem:
             levels=tuple(self.levels[i] for i in robots) if self.levels else (),
             known=known,
             waiting=self.waiting.part(robots, places),
+            begun=tuple(self.begun[i] for i in robots) if self.begun else (),
             sooner=tuple(self.sooner[j] for j in tasks) if self.sooner else (),
         )
 
@@ -175,7 +177,8 @@ class Problem:
     @cached_property
     def model(self) -> PlanModel:
         """What the rules in force come to."""
-        parts = Parts(len(self.robots), len(self.tasks))
+        over = {self.task_index[name] for name in self.past or ()}
+        parts = Parts(len(self.robots), len(self.tasks), dict(enumerate(self.begun)), over)
         for rule in self.rules:
             parts.rule = rule.word
             parts.free = {number for word, number in self.freed if word == rule.word}

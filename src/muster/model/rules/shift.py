@@ -105,22 +105,7 @@ def with_end(robot: Robot, until_s: float | None) -> Robot:
     return replace(robot, available_until_s=until_s, shifts_s=(*robot.shifts_s[:-1], *last))
 
 
-def would_be_back_late(back_s: float, by_s: float) -> str:
-    """Why a robot cannot do a task after which it would be back at a time."""
-    return f"shift: would be back at {back_s:,.1f} s, after {by_s:,g} s"
-
-
-def is_back_late(back_s: float, by_s: float) -> str:
-    """Why a robot can do no task more."""
-    return f"shift: is done at {back_s:,.2f} s without it, its shift ends at {by_s:,.2f} s"
-
-
 def extended(robot: Robot, until_s: float) -> Robot:
     """The robot, whose shift does not end before a time."""
     ends_s = robot.available_until_s
     return robot if ends_s is None or ends_s >= until_s else with_end(robot, until_s)
-
-
-def waits_for_shift(robot: str, begins_s: float) -> str:
-    """Say that a robot rests before work would be done."""
-    return f"waits for shift: {robot} works from {round(begins_s, 1):,g} s on"
