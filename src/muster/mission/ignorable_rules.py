@@ -24,10 +24,10 @@ _KEYS: Mapping[str, tuple[str, ...]] = {
     "prerequisite": ("lags",),
     "window": ("window_s",),
     "deadline": ("deadline_s",),
-    "shift": ("available_until_s", "shifts_s"),
-    "duty": ("longest_duty_s",),
+    "shift": ("available_until_s",),
     "team": ("robots_needed", "team", "needs"),
     "relation": ("same_robot_as", "other_robot_than", "starts_with"),
+    "lock": ("only_robots",),
     "load": ("load", "delivers", "load_capacity", "load_at_start"),
     "battery": ("battery",),
 }

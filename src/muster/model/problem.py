@@ -15,7 +15,7 @@ import numpy.typing as npt
 from muster import core
 from muster.mission.declared_rules import rules_in_order
 from muster.mission.errors import ParameterError
-from muster.mission.ignorable_rules import ignored_rules
+from muster.mission.ignorable_rules import as_it_holds, ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Station, Task
 from muster.mission.plan import tie_order
 from muster.mission.supported_features import require_supported
@@ -97,9 +97,11 @@ class Problem:
         require_supported(mission)
         ignored = ignored_rules(ignored)
         if "lock" in ignored:  # taken off the tasks, as planning makes locks of its own
-            tasks = tuple(replace(task, only_robots=None) for task in mission.tasks)
-            stations = tuple(replace(station, only_robots=None) for station in mission.stations)
-            mission = replace(mission, tasks=tasks, stations=stations)
+            mission = replace(
+                mission,
+                tasks=tuple(as_it_holds(task, ("lock",)) for task in mission.tasks),
+                stations=tuple(as_it_holds(station, ("lock",)) for station in mission.stations),
+            )
         return cls(
             mission=mission,
             objective=objective,

@@ -14,12 +14,12 @@ import numpy as np
 
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.system.clock import TIME_ROUNDING_S
+from muster.mission.task_relations import IN_ITS_PLACE
 from muster.model.bottleneck import matched
 from muster.model.parts import Openings
 from muster.model.plan_model import PlanModel
 from muster.model.problem import Problem
 from muster.model.robot_limits import RobotLimits
-from muster.model.rules.either_or import done_instead
 from muster.model.rules.rule import listed
 from muster.model.rules.team import missing_of_seat
 from muster.model.rules.times import rounded
@@ -182,7 +182,7 @@ class UnderWay:
             if self._names[j] not in begun:
                 others = (k for k in self._model.exclusive[j] if self._is_chosen(k, pickups[k], begun, over))
                 if (other := next(others, None)) is not None:
-                    found[self._names[j]] = f"{word}: {done_instead(self._names[other])}"
+                    found[self._names[j]] = f"{word}: {self._names[other]} is {IN_ITS_PLACE}"
         return found
 
     def _is_chosen(self, j: int, pickup: int, begun: Container[str], over: Container[str]) -> bool:

@@ -337,8 +337,7 @@ def _robots_for(rest: RemainingMission, task: Task) -> tuple[tuple[str, ...] | N
     """The only robots of the crew that may do a task, None: all; and why there is none, if so."""
     refused = rest.refusals.get(task.id, {})
     binding = rest.bindings.get(task.id, Binding())
-    carried = any(task.id in tasks for tasks in rest.aboard.values())
-    lock = None if "lock" in rest.ignored and not carried else task.only_robots
+    lock = task.only_robots
     if lock is None and not refused and binding == Binding():
         return None, ""
     crew = [snapshot.robot.id for snapshot in rest.crew]

@@ -29,9 +29,4 @@ class EitherOr(Rule):
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         problem = plan.problem
         done = [problem.tasks[k].id for k in problem.model.exclusive[j] if k in plan.done]
-        return done_instead(done[0]) if done else None
-
-
-def done_instead(other: str) -> str:
-    """Why a task is not done in whose place another is."""
-    return f"{other} is {IN_ITS_PLACE}"
+        return f"{done[0]} is {IN_ITS_PLACE}" if done else None
