@@ -25,6 +25,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.plan import RouteStop, Unassigned, teams_of
 from muster.mission.system.clock import VirtualClock
 from muster.model.problem import Problem
+from muster.model.rules.team import by_so_many
 from muster.state.reasons import in_one_line, reasons_in_one_line
 
 RobotsOf = Mapping[int, frozenset[int]]
@@ -207,13 +208,12 @@ def _robots_of(problem: Problem, routes: Routes) -> RobotsOf:
 
 def _locked(problem: Problem, robots_of: RobotsOf, free: frozenset[int]) -> Problem:
     """The problem in which tasks that have a robot or a team keep it, but for some."""
-    tasks = tuple(
-        replace(task, only_robots=tuple(problem.robots[i].id for i in sorted(robots_of[j])))
-        if j in robots_of and j not in free
-        else task
-        for j, task in enumerate(problem.tasks)
-    )
-    return replace(problem, tasks=tasks)
+    tasks = list(problem.tasks)
+    for j, robots in robots_of.items():
+        if j not in free:
+            only = tuple(problem.robots[i].id for i in sorted(robots))
+            tasks[j] = replace(by_so_many(tasks[j], len(robots)), only_robots=only)
+    return replace(problem, tasks=tuple(tasks))
 
 
 def _spared(problem: Problem, routes: Routes) -> dict[int, float]:

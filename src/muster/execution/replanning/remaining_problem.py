@@ -373,7 +373,7 @@ def _lasting(task: Task, duration_s: float) -> Task:
 
 def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
     """The mission of which the problem is made. Travel is handed to the problem apart."""
-    mission = rest.mission
+    mission, crew = rest.mission, [snapshot.robot.id for snapshot in rest.crew]
     rules = replace(mission.rules, travel="euclidean", capacity_reserve=0.0, return_to_start=False)
     scores = mission.suitability
     return mission.at_once(
@@ -384,7 +384,7 @@ def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
         suitability=None if scores is None else {kind: {**row, SO_FAR: 1.0} for kind, row in scores.items()},
         robots=tuple(_robot(rest, snapshot) for snapshot in rest.crew),
         tasks=tuple(tasks),
-        stations=rest.stations,
+        stations=tuple(one for station in rest.stations if (one := station.for_robots(crew)) is not None),
     )
 
 
