@@ -244,9 +244,10 @@ class Problem:
     @cached_property
     def asked(self) -> Mapping[str, str]:
         """What not every allocator can do, and the problem asks for: each with the place that does so first."""
-        said = {word: where for rule in all_rules() for word, where in rule.asks(self).items() if where is not None}
         word_of = {primitive: word for rule in all_rules() for primitive, word in rule.asked.items()}
         given = {word_of[part]: rule for part, rule in self.model.parts.words.items() if part in word_of}
+        asks = ((rule.word, word, where) for rule in all_rules() for word, where in rule.asks(self).items())
+        said = {word: where for rule, word, where in asks if where is not None and given.get(word, rule) == rule}
         found = said | {word: self._stated(rule) for word, rule in given.items() if word not in said}
         late = {"lateness": "objective lateness"} if self.objective == "lateness" else {}
         return found | late | (_RETURN_ASKED if self._makespan_includes_ways_to_ends else {})

@@ -5,6 +5,8 @@ from __future__ import annotations
 import heapq
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from itertools import chain
+from operator import methodcaller
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,7 @@ from muster.mission.plan import Reason, Unassigned
 from muster.model.plan_model import ROUNDING
 from muster.model.problem import Bools, Floats, Indices, Problem
 from muster.model.rules import Outlook
+from muster.model.rules.rule import said
 
 Legs = Callable[[int, Any, Any], Floats]
 
@@ -109,10 +112,9 @@ def _reason(problem: Problem, limits: Limits, i: int, j: int, outlooks: Iterable
     Where no rule has words for it the rule that excluded the pair is named; where none did, no rule is.
     """
     robot = problem.robots[i].id
-    found = ((rule.word, rule.never(problem, i, j, outlook)) for outlook in outlooks for rule in problem.rules)
-    said = next(((word, detail) for word, detail in found if detail is not None), None)
-    if said is not None:
-        return Reason(robot, *said)
+    found = (said(problem.rules, problem, i, j, methodcaller("never", problem, i, j, outlook)) for outlook in outlooks)
+    if (first := next(chain.from_iterable(found), None)) is not None:
+        return Reason(robot, *first)
     excluded = limits.rule_that_excluded(i, j) if limits.is_timed else None
     if excluded is None:
         return Reason(robot, "not-chosen", "no plan does the task, whoever might")

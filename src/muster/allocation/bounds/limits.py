@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from operator import methodcaller
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +15,7 @@ from muster.allocation.bounds.gap_cycles import gap_cycle
 from muster.model.bottleneck import bottleneck
 from muster.model.plan_model import ROUNDING, PlanModel
 from muster.model.problem import Bools, Floats, Problem
+from muster.model.rules.rule import said
 from muster.model.rules.times import spans
 
 _MOST_ROUNDS = 50  # of narrowing bounds; they hold whenever it ends
@@ -155,7 +157,7 @@ class Limits:
         for rule in sorted(self.problem.rules, key=lambda rule: not rule.about_one):
             possible = rule.possible(step)
             if possible is not None and not possible[i, j]:
-                return rule.word, step
+                return rule.named(self.problem, i, j), step
         return None
 
     @cached_property
@@ -338,7 +340,8 @@ def _late(limits: Limits, times: _Times, k: int) -> str:
 
 def late_task(problem: Problem, j: int, ready: float, end: float) -> str:
     """That task j is too late which is ready, and ends, at these times at the earliest; empty: by no rule."""
-    return next((late for rule in problem.rules if (late := rule.late(problem, j, ready, end))), "")
+    lines = said(problem.rules, problem, 0, j, methodcaller("late", problem, j, ready, end))
+    return next((late for _, late in lines), "")
 
 
 def _begin(rules: PlanModel, u: int, ready: Floats) -> float:

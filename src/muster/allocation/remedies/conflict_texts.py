@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from operator import methodcaller
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from muster.allocation.bounds.subset_times import sizes_that_differ, tied_pairs,
 from muster.allocation.bounds.usage_bounds import FEW, UsageBounds
 from muster.mission.model import Robot, Task
 from muster.mission.texts.counting import counted
-from muster.model.rules.rule import ROUNDING
+from muster.model.rules.rule import ROUNDING, said
 from muster.model.rules.times import moments
 
 
@@ -89,7 +90,8 @@ def _after(limits: Limits, i: int, a: int, b: int) -> str:
     if late := late_task(problem, b, ready, end):
         return f"with {first} first, {then} {late}"
     over = float(rules.busy_until(i, np.array(end), limits.home[i, b]))
-    back = next((text for rule in problem.rules if (text := rule.over_late(problem, i, over))), "")
+    lines = said(problem.rules, problem, i, b, methodcaller("over_late", problem, i, over))
+    back = next((text for _, text in lines), "")
     return f"with {first} first and then {then}, {back}" if back else ""
 
 

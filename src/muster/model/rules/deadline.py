@@ -39,6 +39,7 @@ class Deadline(Latest):
     """The end of the work is at most `deadline_s`."""
 
     word: ClassVar[str] = "deadline"
+    speaks_of = "ends_by"
     asked: ClassVar[Mapping[str, str]] = {"ends_by": "deadline"}
     key = "deadline"
     lifts = LaterDeadline
@@ -59,7 +60,7 @@ class Deadline(Latest):
         return np.asarray(limits.pair_end <= limits.rules.ends_by * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        return self._by_least_times(outlook.limits, i, j, bound=j, limit="deadline, which is")
+        return self._by_least_times(outlook.limits, i, j, f"{self.called(problem, i, j, 'deadline')}, which is")
 
     def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
         return self.late(problem, j, 0.0, float(limits.pair_end[i, j]))
@@ -72,7 +73,7 @@ class Deadline(Latest):
         if math.isinf(end) or end <= deadline * (1 + ROUNDING):
             return None
         ends, until = moments(problem, end, deadline)
-        return f"ends at {ends} at the earliest, its deadline is {until}"
+        return f"ends at {ends} at the earliest, its {self.called(problem, 0, j, 'deadline')} is {until}"
 
     def broken_at(self, tried: Tried) -> str:
         own = self.late(tried.problem, tried.j, 0.0, min(end for _, _, end in tried.stops))

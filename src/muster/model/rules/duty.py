@@ -45,6 +45,7 @@ class Duty(Rule):
     """A route ends at most `longest_duty_s` after its robot leaves its start, as late as that demands."""
 
     word: ClassVar[str] = "duty"
+    speaks_of = "lasts_most"
     asked: ClassVar[Mapping[str, str]] = {"lasts_most": "duty"}
     lifted_late = True
     key = "duty"
@@ -72,7 +73,8 @@ class Duty(Rule):
         if math.isinf(least) or least <= longest * (1 + ROUNDING):
             return None
         takes, most = spans(least, longest)
-        return f"takes at least {takes} from its start to the end of its route, its longest duty is {most}"
+        duty = self.called(problem, i, j, "longest duty")
+        return f"takes at least {takes} from its start to the end of its route, its {duty} is {most}"
 
     def broken_at(self, tried: Tried) -> str:
         return "with it no times keep every robot within its longest duty"

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-from muster.model.rules.rule import ROUNDING, Change, Found, Limits, Question, Rule, Tried, stop_of
+from muster.model.rules.rule import OF_ROBOTS, ROUNDING, Change, Found, Limits, Question, Rule, Tried, stop_of
 from muster.model.rules.times import moments
 
 
@@ -57,12 +57,12 @@ class Latest(Rule):
         """That the limit is before what robot i and task j come to at the least; None: it is not."""
         raise NotImplementedError
 
-    def _by_least_times(self, limits: Limits, i: int, j: int, *, bound: int, limit: str) -> str | None:
-        """The same, by times that hold whatever the rule says of whom it is `bound` to; `limit` is it in words."""
+    def _by_least_times(self, limits: Limits, i: int, j: int, limit: str) -> str | None:
+        """The same, by times that hold whatever the rule says of whom it binds; `limit` is it in words."""
         problem = limits.problem  # not that of what is free, which has no such limit
         if not limits.is_timed or self._excludes(problem, limits, i, j) is None:
             return None
-        free = limits.without(self.word, bound)
+        free = limits.without(self.named(problem, i, j), i if self.speaks_of in OF_ROBOTS else j)
         late = None if free is None else self._excludes(problem, free, i, j)
         (until,) = moments(problem, self.latest(problem, i, j))
         return late or f"what it waits for is too late for its {limit} {until}"

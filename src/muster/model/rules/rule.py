@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -24,6 +24,10 @@ Scores = Mapping[str, Mapping[str, float]]
 
 ROUNDING = 2e-9
 """By how much a usage may be above a capacity, relative; a little more than the judge allows."""
+
+
+OF_ROBOTS = ("over_by", "lasts_most", "spans")
+"""The limits of times of robots; the others are of tasks."""
 
 
 class Question(Protocol):
@@ -315,6 +319,8 @@ class Rule:
         whether calls at stations may keep a route from breaking it.
     resource
         what work takes that robots have only so much of by it: the word of a shortfall, and what it is; None: nothing.
+    speaks_of
+        the limit of times, a field of `Parts`, of which it speaks whichever rule gave it; empty: it speaks of itself.
     key, no_change
         of its change in the plain data of a remedy, and what stands there where no change is needed; no key: a robot
         is not changed for it, or not by it alone.
@@ -330,15 +336,26 @@ class Rule:
     of_the_team: ClassVar[bool] = False
     kept_by_calls: ClassVar[bool] = False
     resource: ClassVar[tuple[str, str] | None] = None
+    speaks_of: ClassVar[str] = ""
     key: ClassVar[str | None] = None
     no_change: ClassVar[Any] = None
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         """For each word of `asked` the place of a problem that asks for it first; None: none does.
 
-        Where nothing is said it is a robot or task with a key that the rule declares.
+        A rule is asked for what it gave first. Where nothing is said it is a robot or task with a key that it declares.
         """
         return {}
+
+    def named(self, problem: Question, i: int, j: int) -> str:
+        """The word of the rule that gave robot i, or task j, the limit of which it speaks."""
+        at = i if self.speaks_of in OF_ROBOTS else j
+        return (self.speaks_of and problem.model.giver(self.speaks_of, at)) or self.word
+
+    def called(self, problem: Question, i: int, j: int, noun: str) -> str:
+        """What people call that limit: by a noun of its own, or by the word of the rule that gave it."""
+        word = self.named(problem, i, j)
+        return noun if word == self.word else word
 
     def compile(self, problem: Question, parts: Parts) -> None:
         """Contribute the primitives that it comes to."""
@@ -422,6 +439,17 @@ class Rule:
     def change(self, problem: Question, robot: Robot, task: Task) -> Change | None:
         """The least change with which the rule does not refuse the pair; None if none is needed."""
         return None
+
+
+def said(
+    rules: Sequence[Rule], problem: Question, i: int, j: int, says: Callable[[Rule], str | None]
+) -> Iterator[tuple[str, str]]:
+    """What rules say of robot i and task j, with their words: of a limit in the words of the rule that gave it."""
+    for rule in rules:
+        if text := says(rule):
+            word = rule.named(problem, i, j)
+            giver = next((one for one in rules if one.word == word), rule)
+            yield word, says(giver) or text
 
 
 def above_room(problem: Question, meters: Sequence[Meter], routes: Routes) -> tuple[float, str]:

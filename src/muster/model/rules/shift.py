@@ -45,6 +45,7 @@ class Shift(Latest):
     """The end of the route is at most `available_until_s`; legs and work are each within one of `shifts_s`, if any."""
 
     word: ClassVar[str] = "shift"
+    speaks_of = "over_by"
     asked: ClassVar[Mapping[str, str]] = {"over_by": "shift", "spans": "rests"}
     key = "shift"
     lifts = LongerShift
@@ -71,7 +72,7 @@ class Shift(Latest):
         return np.asarray(limits.over <= until * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        return self._by_least_times(outlook.limits, i, j, bound=i, limit="shift, which ends at")
+        return self._by_least_times(outlook.limits, i, j, f"{self.called(problem, i, j, 'shift')}, which ends at")
 
     def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
         return self.over_late(problem, i, float(limits.over[i, j]))
@@ -84,7 +85,8 @@ class Shift(Latest):
         if math.isinf(over) or over <= until * (1 + ROUNDING):
             return None
         back, ends = moments(problem, over, until)
-        return f"its route would end at {back} at the earliest, its shift ends at {ends}"
+        shift = self.called(problem, i, 0, "shift")
+        return f"its route would end at {back} at the earliest, its {shift} ends at {ends}"
 
     def broken_at(self, tried: Tried) -> str:
         own = self.over_late(tried.problem, tried.i, tried.over)
