@@ -157,4 +157,4 @@ def test_a_duty_counts_from_when_the_robot_left():
     limits = UnderWay(MISSION, ()).limits(Robot(id="t", position=(0, 0), longest_duty_s=50, available_until_s=90))
     assert limits.too_late(60, 5, 20) == limits.too_late(60, 30, math.inf) == ""
     assert limits.too_late(60, 11, 20) == "duty: would be back at 71.0 s, after 70 s"
-    assert limits.too_late(60, 31, 20) == "shift: would be back at 91.0 s, after 90 s"
+    assert limits.too_late(60, 31, None) == "shift: would be back at 91.0 s, after 90 s"

@@ -371,7 +371,7 @@ class Dispatch:
         if cause != "prerequisite" and words != said:
             self._emit(Waits(robot=state.robot.id, task=task, cause=cause, words=words))
 
-    def _too_late(self, state: RobotState, task: str, begin_s: float, leaves_s: float = math.inf) -> str:
+    def _too_late(self, state: RobotState, task: str, begin_s: float, leaves_s: float | None = None) -> str:
         """Why a robot that is at a task at a time cannot do it, by its times and the robot's; else empty."""
         left_s = leaves_s if state.known.left_s is None else state.known.left_s
         return self._ledger.model.too_late(task, state.limits, begin_s, state.work_s, state.home_s, left_s)

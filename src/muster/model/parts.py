@@ -103,7 +103,7 @@ class Begun:
         before which its route cannot be over any more.
     """
 
-    busy_s: tuple[float, float]
+    busy_s: tuple[float, float] = -math.inf, -math.inf
     left_s: float | None = None
     over_s: float = -math.inf
 

@@ -61,15 +61,20 @@ class RobotLimits:
         """Return when it is at the end of its route, so many seconds away, if it is free at a time; inf: never."""
         return self.set_out(free_s, home_s) + home_s if home_s else free_s
 
-    def too_late(self, free_s: float, home_s: float, left_s: float) -> str:
-        """Return why it is back too late that is free at a time, and left its start at another; empty: it is not."""
+    def due_s(self, left_s: float | None) -> float:
+        """Return when it has to be back that left its start at a time, if it has; inf: whenever."""
+        return min(self.over_by_s, math.inf if left_s is None else left_s + self.lasts_most_s)
+
+    def too_late(self, free_s: float, home_s: float, left_s: float | None) -> str:
+        """Return why it is back too late that is free at a time, and left its start at another, if it has; or ""."""
         back_s = self.back_s(free_s, home_s)
         if back_s == math.inf:
             return self.never("the way to its end")
-        for limit, by_s in (("over_by", self.over_by_s), ("lasts_most", left_s + self.lasts_most_s)):
-            if back_s > by_s + TIME_ROUNDING_S:
-                return f"{self.words[limit]}: would be back at {back_s:,.1f} s, after {by_s:,g} s"
-        return ""
+        by_s = self.due_s(left_s)
+        if back_s <= by_s + TIME_ROUNDING_S:
+            return ""
+        word = self.words["over_by" if by_s == self.over_by_s else "lasts_most"]
+        return f"{word}: would be back at {back_s:,.1f} s, after {by_s:,g} s"
 
     def never(self, what: str) -> str:
         """Return why it never again has the time for something without a rest."""

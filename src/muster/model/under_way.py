@@ -291,7 +291,7 @@ class UnderWay:
             yield now
 
     def too_late(
-        self, task: str, robot: RobotLimits, arrive_s: float, lasts_s: float, home_s: float, left_s: float = math.inf
+        self, task: str, robot: RobotLimits, arrive_s: float, lasts_s: float, home_s: float, left_s: float | None = None
     ) -> str:
         """Why a robot that is at a task at a time cannot do it and be back in time; empty: it can.
 

@@ -74,11 +74,6 @@ class RobotSnapshot:
     left_s: float | None = None
 
     @property
-    def since_s(self) -> float:
-        """When it left its start; inf: it has not."""
-        return math.inf if self.left_s is None else self.left_s
-
-    @property
     def has_past(self) -> bool:
         return self.task is not None or self.used > 0 or bool(self.done)
 
@@ -239,9 +234,7 @@ def _late(rest: RemainingMission, problem: Problem) -> dict[str, str]:
     """Robots whose routes would have to be over before they can be back, and why they can do no task more."""
     model = UnderWay(rest.mission, (), rest.ignored)
     over_s = {robot.id: begun.over_s for robot, begun in zip(problem.robots, problem.begun, strict=True)}
-    found = {
-        one.robot.id: model.limits(one.robot).too_late(over_s[one.robot.id], 0.0, one.since_s) for one in rest.crew
-    }
+    found = {one.robot.id: model.limits(one.robot).too_late(over_s[one.robot.id], 0.0, one.left_s) for one in rest.crew}
     return {robot: f"{late}, even without it" for robot, late in found.items() if late}
 
 

@@ -413,10 +413,6 @@ class Rule:
         """A task without what binds it no more once some, by id, are done or begun by so many robots each."""
         return task
 
-    def outlasting(self, robot: Robot, end_s: float | None) -> Robot:
-        """The robot as it could be at work until a time; None: however long."""
-        return robot
-
     def never_used(self, mission: Mission, robot: Robot) -> str | None:
         """Why a robot of a mission does nothing, whatever the plan; None if it may do something."""
         return None

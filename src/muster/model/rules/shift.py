@@ -92,11 +92,6 @@ class Shift(Latest):
         own = self.over_late(tried.problem, tried.i, tried.over)
         return own or "with it the route of another robot would end after its shift"
 
-    def outlasting(self, robot: Robot, end_s: float | None) -> Robot:
-        if robot.available_until_s is None:
-            return robot
-        return with_end(robot, None if end_s is None else max(robot.available_until_s, end_s))
-
     def without_end(self, robots: tuple[Robot, ...]) -> tuple[Robot, ...]:
         return tuple(with_end(robot, None) for robot in robots)
 
@@ -105,9 +100,3 @@ def with_end(robot: Robot, until_s: float | None) -> Robot:
     """Return the robot with another end of its only shift, or of its last one."""
     last = tuple((begins, until_s) for begins, _ in robot.shifts_s[-1:])
     return replace(robot, available_until_s=until_s, shifts_s=(*robot.shifts_s[:-1], *last))
-
-
-def extended(robot: Robot, until_s: float) -> Robot:
-    """The robot, whose shift does not end before a time."""
-    ends_s = robot.available_until_s
-    return robot if ends_s is None or ends_s >= until_s else with_end(robot, until_s)
