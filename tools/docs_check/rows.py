@@ -62,7 +62,8 @@ class Row:
     @property
     def places(self) -> list[str]:
         """Return the paths at which what is described is, and those of the tests that show it."""
-        return [path for cell in self.cells[2:4] for path in re.findall(r"`([\w./-]+/[\w./-]*)`", cell)]
+        tests = [found["test"] for found in _PROOF.finditer(self.cells[3]) if found["test"]]
+        return [*re.findall(r"`([\w./-]+/[\w./-]*)`", self.cells[2]), *tests]
 
     @property
     def commands(self) -> list[Shown]:
