@@ -21,13 +21,22 @@ from typing import Any
 import yaml
 
 from tools.docs_check import outcomes as o
-from tools.docs_check.commands import COLUMNS, README_COLUMNS, ROOT, command_lines, look_up, run_command, without_remark
+from tools.docs_check.commands import (
+    COLUMNS,
+    README_COLUMNS,
+    ROOT,
+    Ran,
+    command_lines,
+    look_up,
+    run_command,
+    without_remark,
+)
 from tools.docs_check.consoles import compare_console, elided_lines
 from tools.docs_check.measured import load, numbers, unknown_numbers
 from tools.docs_check.outcomes import Outcome
 from tools.docs_check.pages import Item, read_page
 from tools.docs_check.pictures import compare, compare_stored
-from tools.docs_check.rows import Due, Row, read_rows, wrong_figures
+from tools.docs_check.rows import Due, Row, Shown, read_rows, wrong_figures
 
 
 def check_page(path: Path, due: Due | None = None) -> list[Outcome]:
@@ -61,6 +70,7 @@ class _PageRun:
         self._names: dict[str, Any] = module.__dict__
         self._printed = ""
         self._servers: list[subprocess.Popen[str]] = []
+        self._of_rows: dict[str, Ran] = {}
 
     def check(self, item: Item) -> Iterator[Outcome]:
         """What became of an item."""
@@ -254,10 +264,16 @@ class _PageRun:
         if not self._due.has(row):
             yield Outcome(o.LEFT, "row", where)
             return
-        wrong = [found for shown in row.commands if (found := wrong_figures(shown, self._folder))]
+        wrong = [found for shown in row.commands if (found := wrong_figures(shown, self._ran_once(shown)))]
         yield from (Outcome(o.FAILED, "row", where, found) for found in wrong)
         if not wrong:
             yield Outcome(o.COMPARED, "row", where)
+
+    def _ran_once(self, shown: Shown) -> Ran:
+        """Run a command of a row, or return what it printed for a row before."""
+        if shown.command not in self._of_rows:
+            self._of_rows[shown.command] = run_command(shown.command, self._folder, shown.limit_s)
+        return self._of_rows[shown.command]
 
 
 def _stored_output(names: list[str]) -> str:

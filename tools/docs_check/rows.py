@@ -16,10 +16,9 @@ import re
 import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from pathlib import Path
 from zlib import crc32
 
-from tools.docs_check.commands import LIMIT_S, ROOT, run_command
+from tools.docs_check.commands import LIMIT_S, ROOT, Ran
 
 SHARES = 10
 """Turns in a row that run every row."""
@@ -149,9 +148,8 @@ def read_rows(text: str, first_line: int = 1) -> list[Row]:
     return found
 
 
-def wrong_figures(shown: Shown, folder: Path) -> str:
-    """Run a command and return what is wrong: that it fails, or figures that it does not print; "" if nothing is."""
-    ran = run_command(shown.command, folder, shown.limit_s)
+def wrong_figures(shown: Shown, ran: Ran) -> str:
+    """Return what is wrong: that the command has failed, or figures that it did not print; "" if nothing is."""
     if ran.code:
         return f"{shown.command}\nexit code {ran.code}\n{ran.out[-2000:]}{ran.err[-2000:]}"
     lines = [line.split() for line in f"{ran.out}\n{ran.err}".splitlines()]
