@@ -8,7 +8,7 @@ from muster.allocation.capabilities import FOR_GOOD, those_that_can
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Task
 from muster.model.problem import Problem
-from muster_team.knowledge.epoch_base import joint_among
+from muster_team.knowledge.rules import joint_among
 
 AGREED = FOR_GOOD - {"load", "battery", "rests", "duty", "either-or"}
 """What the auction agrees on: without a centre nobody shares out the slots of stations, or knows what lies where.

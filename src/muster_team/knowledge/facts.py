@@ -16,6 +16,10 @@ AT_ONCE = 40
 """The largest number of facts in a repair. A robot that lacks more asks again and receives others."""
 
 
+UNHEARD = 10_000
+"""More facts than a robot may know of without knowing those that came before them."""
+
+
 @dataclass
 class Knowledge:
     """The facts that one robot knows."""
@@ -42,8 +46,12 @@ class Knowledge:
         return self.add(task, robot, kind, content), True
 
     def add(self, task: str, robot: str, kind: str, content: bytes = b"") -> Fact:
-        """Add a fact stated by the robot itself, ordered after all facts that it knows."""
-        said = Fact(task, robot, kind, 1 + max((fact.order for fact in self.facts), default=0), content)
+        """Add a fact stated by the robot itself, ordered after all facts that it knows.
+
+        An order far above the number of facts is no robot's that counts them: it leaves that of the others alone.
+        """
+        most = len(self.facts) + UNHEARD
+        said = Fact(task, robot, kind, 1 + max((f.order for f in self.facts if f.order <= most), default=0), content)
         self.learn([said])
         return said
 

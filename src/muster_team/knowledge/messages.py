@@ -22,6 +22,16 @@ class Claim:
     begun: bool = False
 
 
+FACTS = ("done", "begun", "waived", "added", "moved", "cancelled", "ready", "left", "joined", "part")
+"""The kinds of facts."""
+
+ORDERS = ("added", "moved")
+"""The kinds of facts that contain a task."""
+
+PRESENCE = ("ready", "left", "joined", "part")
+"""The kinds of facts that robots state of a task that they begin together."""
+
+
 @dataclass(frozen=True, slots=True)
 class Fact:
     """A statement that stays true.

@@ -109,6 +109,8 @@ class Members:
         """Note a message received directly; return whether its sender has restarted."""
         peer = self._peers[message.sender]
         peer.spoke_s = now
+        if message.incarnation == peer.incarnation:
+            peer.heard_s = max(peer.heard_s, now)  # whatever others have told of its number
         if message.heartbeats:
             peer.unheard = message.unheard
         return peer.hear(message.incarnation, message.number, now)

@@ -9,9 +9,10 @@ from muster.mission.errors import ParameterError
 from muster.mission.value_types import shown
 from muster_team.auctions.epoch import Epoch
 from muster_team.knowledge.effects import Memory
-from muster_team.knowledge.epoch_base import Base, Rules
+from muster_team.knowledge.epoch_base import Base
 from muster_team.knowledge.facts import Knowledge, in_order
 from muster_team.knowledge.messages import Claim, Fact
+from muster_team.knowledge.rules import Rules
 from muster_team.negotiators.joint_starts import JointStarts
 
 

@@ -12,23 +12,31 @@ robot that has the lacking data sends it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import repeat
-from typing import Any
+from typing import Any, TypeVar
 
 from muster_team.auctions.epoch import Epoch
 from muster_team.auctions.valuation import Valuer
+from muster_team.knowledge.admission import admit
 from muster_team.knowledge.effects import Counts, Memory, Notice, Notices, Outgoing
-from muster_team.knowledge.epoch_base import Base, Rules
+from muster_team.knowledge.epoch_base import Base
 from muster_team.knowledge.facts import in_order
 from muster_team.knowledge.messages import Claim, Declaration, Fact, Heartbeat, Message, Stage
+from muster_team.knowledge.rules import Rules
+from muster_team.knowledge.verdicts import TAKEN, Refused
 from muster_team.membership.identity import Identity
 from muster_team.membership.members import Members, Timeouts
 from muster_team.membership.peer_progress import PeerProgress
 from muster_team.membership.stalled_members import StalledMembers
 from muster_team.negotiators.owned_tasks import OwnedTasks
 from muster_team.negotiators.repairs import Repairs
+
+LEAP = 2**20
+"""The most epochs that a robot goes on at once. So no number that arrives uses up all that there are."""
+
+S = TypeVar("S", Claim, Fact)
 
 
 @dataclass
@@ -62,10 +70,11 @@ class Participant:
     absent: Collection[str] = ()
 
     def __post_init__(self) -> None:
-        memory = self.remembered or Memory(knows=not self.forgot)
+        self.rules = replace(self.rules, misfit=self.valuer.misfit)
         self.members = Members(self.robot, self.timeouts)
         self.counts = Counts()
         self.notices = Notices()
+        memory = self._healed(self.remembered or Memory(knows=not self.forgot))
         self.epochs: list[Epoch] = []  # those of which the base was found
         self.knows = memory.knows
         self._before = memory
@@ -107,13 +116,17 @@ class Participant:
         return self._due_s
 
     def handle(self, message: Message, now: float) -> list[Outgoing]:
-        """Process a message; return the messages to send."""
+        """Process a message; return the messages to send. What is refused changes nothing."""
         if self._identity.superseded:
+            return []
+        verdict = admit(self.rules, message)
+        if isinstance(verdict, Refused):
+            self._refuse(str(message.sender), verdict.reason)
             return []
         if not self._hear(message, now):
             return self._correct(message, now)
         out: list[Outgoing] = []
-        number = message.stage.epoch
+        number = min(message.stage.epoch, self.epoch.own.epoch + LEAP)
         if self.epoch.own.incarnation < self.incarnation:
             out += self._enter(max(number, self.epoch.own.epoch + 1), now)
         if number > self.epoch.own.epoch:
@@ -121,6 +134,8 @@ class Participant:
             out += self._enter(number, now)
         if number == self.epoch.own.epoch and self._absorb(message):
             out += self._go_on(now)
+        for robot, reason in self.epoch.take_refused():
+            self._refuse(robot or message.sender, reason)
         if self._restart_heard and self._is_outdated():
             out += self._enter(self.epoch.own.epoch + 1, now)
         self._peer_progress.hear(message, self.epoch.stage)
@@ -141,6 +156,30 @@ class Participant:
         if self._owned.unsent or (now >= self._due_s and not out):
             out.append(Outgoing(self._heartbeat(now)))
         return out
+
+    def _refuse(self, sender: str, reason: str) -> None:
+        """Count what was refused, and tell of it once for each reason."""
+        self.counts.refused[sender] += 1
+        self.notices.tell_refused(sender, reason)
+
+    def _healed(self, memory: Memory) -> Memory:
+        """What was remembered, without what no robot can mean; without that the robot does not remember everything."""
+
+        def admitted(statements: Iterable[S]) -> tuple[S, ...]:
+            verdicts = [(said, admit(self.rules, said)) for said in statements]
+            for _, verdict in verdicts:
+                if isinstance(verdict, Refused):
+                    self._refuse(self.robot, verdict.reason)
+            return tuple(said for said, verdict in verdicts if not isinstance(verdict, Refused))
+
+        kept = replace(
+            memory,
+            claims=admitted(memory.claims),
+            facts=admitted(memory.facts),
+            reserved=admitted(memory.reserved),
+            epoch=memory.epoch if admit(self.rules, Stage(memory.epoch)) == TAKEN else 0,
+        )
+        return kept if kept == memory else replace(kept, knows=False)
 
     @property
     def _base(self) -> Base | None:

@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from dataclasses import MISSING, fields, replace
 from typing import Any
 
-from muster_team.knowledge.messages import Claim, Declaration, Fact, Heartbeat, Message, RoundBids, Sold, Stage
+from muster_team.knowledge.messages import FACTS, Claim, Declaration, Fact, Heartbeat, Message, RoundBids, Sold, Stage
 from muster_team.network.optional_parts import require_net
 from muster_team.network.plain_values import (
     COUNT,
@@ -39,10 +39,6 @@ PROTOCOL = 5
 
 class OtherVersionError(MalformedError):
     """A message of another version of the protocol."""
-
-
-FACTS = ("done", "begun", "waived", "added", "moved", "cancelled", "ready", "left", "joined", "part")
-"""The kinds of facts."""
 
 
 def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
