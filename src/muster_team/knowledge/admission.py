@@ -29,6 +29,7 @@ from muster_team.knowledge.messages import (
 )
 from muster_team.knowledge.new_tasks import task_of
 from muster_team.knowledge.rules import Rules
+from muster_team.knowledge.signatures import NO_KEYS, Signatures, forged_in
 from muster_team.knowledge.verdicts import TAKEN, Refused, Taken
 
 MOST = 2**53
@@ -45,9 +46,16 @@ _LONGEST_NUMBER = 20  # digits of an incarnation
 Statement = Message | Declaration | Claim | Fact | RoundBids | Sold | Heartbeat | Stage
 
 
-def admit(rules: Rules, statement: Statement) -> Taken | Refused:
-    """Whether a statement may be believed in a mission with these rules; it does not raise, whatever is in it."""
+def admit(rules: Rules, statement: Statement, signatures: Signatures = NO_KEYS) -> Taken | Refused:
+    """Whether a statement may be believed in a mission with these rules; it does not raise, whatever is in it.
+
+    Of a message all that robots state in it is held against their `signatures`, and so is a fact that was remembered.
+    """
     fault = next(_faults(rules, statement), None)
+    if fault is None and isinstance(statement, Message) and (robot := forged_in(statement, signatures)):
+        fault = f"a statement that {shown(robot)} has not made"
+    if fault is None and isinstance(statement, Fact) and not signatures.holds(statement):
+        fault = f"a fact that {shown(statement.robot)} has not stated"
     return TAKEN if fault is None else Refused(fault)
 
 
@@ -61,6 +69,9 @@ def _message(rules: Rules, said: Message) -> Iterator[str]:
     parts: tuple[Statement, ...] = (said.stage, *said.declarations, *said.bids, *said.sales, *said.heartbeats)
     for part in (*parts, *said.facts):
         yield from _faults(rules, part)
+    yield from _robots(rules, (birth.robot for birth in said.births))
+    yield from _counts("incarnation", [birth.incarnation for birth in said.births])
+    yield from _robots(rules, (evidence.robot for evidence in said.evidence))
 
 
 def _stage(rules: Rules, stage: Stage) -> Iterator[str]:

@@ -11,6 +11,7 @@ from hashlib import blake2b
 
 from muster_team.knowledge.joint_statements import parts_of_deeds
 from muster_team.knowledge.messages import Fact
+from muster_team.knowledge.signatures import NO_KEYS, Signatures
 
 AT_ONCE = 40
 """The largest number of facts in a repair. A robot that lacks more asks again and receives others."""
@@ -26,6 +27,7 @@ class Knowledge:
 
     facts: set[Fact] = field(default_factory=set)
     digest: int = 0
+    signatures: Signatures = NO_KEYS
     _deeds_at: int = 0  # the digest for which these deeds were found
     _deeds_found: dict[str, list[tuple[Fact, ...]]] = field(default_factory=dict)
 
@@ -52,6 +54,7 @@ class Knowledge:
         """
         most = len(self.facts) + UNHEARD
         said = Fact(task, robot, kind, 1 + max((f.order for f in self.facts if f.order <= most), default=0), content)
+        said = self.signatures.sign(said)
         self.learn([said])
         return said
 

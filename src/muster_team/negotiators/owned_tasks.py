@@ -13,6 +13,7 @@ from muster_team.knowledge.epoch_base import Base
 from muster_team.knowledge.facts import Knowledge, in_order
 from muster_team.knowledge.messages import Claim, Fact
 from muster_team.knowledge.rules import Rules
+from muster_team.knowledge.signatures import Signatures
 from muster_team.negotiators.joint_starts import JointStarts
 
 
@@ -56,10 +57,11 @@ class OwnedTasks:
         self.joint = JointStarts(self.robot, self.known, self.say)
 
     @classmethod
-    def remembered(cls, robot: str, incarnation: int, memory: Memory) -> OwnedTasks:
+    def remembered(cls, robot: str, incarnation: int, memory: Memory, signatures: Signatures) -> OwnedTasks:
         begun = {claim.task for claim in memory.claims if claim.begun}
         reserved = {fact.task: fact for fact in memory.reserved}
-        work = cls(robot, incarnation, begun=begun, refused=set(memory.refused), reserved=reserved)
+        known = Knowledge(signatures=signatures)
+        work = cls(robot, incarnation, known, begun=begun, refused=set(memory.refused), reserved=reserved)
         work.known.learn(memory.facts)
         return work
 

@@ -23,8 +23,18 @@ from muster_team.knowledge.admission import admit
 from muster_team.knowledge.effects import Counts, Memory, Notice, Notices, Outgoing
 from muster_team.knowledge.epoch_base import Base
 from muster_team.knowledge.facts import in_order
-from muster_team.knowledge.messages import Claim, Declaration, Fact, Heartbeat, Message, Stage
+from muster_team.knowledge.messages import (
+    Birth,
+    Claim,
+    Declaration,
+    Evidence,
+    Fact,
+    Heartbeat,
+    Message,
+    Stage,
+)
 from muster_team.knowledge.rules import Rules
+from muster_team.knowledge.signatures import NO_KEYS, Signatures, convicts
 from muster_team.knowledge.verdicts import TAKEN, Refused
 from muster_team.membership.identity import Identity
 from muster_team.membership.members import Members, Timeouts
@@ -58,6 +68,8 @@ class Participant:
         for at-most-once tasks until robots that remember have declared together with it.
     absent
         robots that join later; nobody waits for them.
+    signatures
+        the proofs of who has stated what, where robots have keys of their own.
     """
 
     robot: str
@@ -68,9 +80,12 @@ class Participant:
     remembered: Memory | None = None
     forgot: bool = False
     absent: Collection[str] = ()
+    signatures: Signatures = NO_KEYS
 
     def __post_init__(self) -> None:
         self.rules = replace(self.rules, misfit=self.valuer.misfit)
+        self.revoked: dict[str, Evidence] = {}
+        self._unsent_evidence: list[Evidence] = []
         self.members = Members(self.robot, self.timeouts)
         self.counts = Counts()
         self.notices = Notices()
@@ -79,7 +94,7 @@ class Participant:
         self.knows = memory.knows
         self._before = memory
         self._identity = Identity(self.robot, self.incarnation)
-        self._owned = OwnedTasks.remembered(self.robot, self.incarnation, memory)
+        self._owned = OwnedTasks.remembered(self.robot, self.incarnation, memory, self.signatures)
         self._peer_progress = PeerProgress(self.robot)
         self._stalled = StalledMembers(self.members)
         self._repairs = Repairs(self.robot, self.timeouts.retry_s)
@@ -119,7 +134,7 @@ class Participant:
         """Process a message; return the messages to send. What is refused changes nothing."""
         if self._identity.superseded:
             return []
-        verdict = admit(self.rules, message)
+        verdict = admit(self.rules, message, self.signatures)
         if isinstance(verdict, Refused):
             self._refuse(str(message.sender), verdict.reason)
             return []
@@ -136,6 +151,10 @@ class Participant:
             out += self._go_on(now)
         for robot, reason in self.epoch.take_refused():
             self._refuse(robot or message.sender, reason)
+        for evidence in self.epoch.take_evidence():
+            self._convict(evidence)
+        if self.revoked and (names := self._trusted_by(message)):
+            out.append(Outgoing(self._message(None, evidence=tuple(self.revoked[r] for r in names)), message.sender))
         if self._restart_heard and self._is_outdated():
             out += self._enter(self.epoch.own.epoch + 1, now)
         self._peer_progress.hear(message, self.epoch.stage)
@@ -157,6 +176,25 @@ class Participant:
             out.append(Outgoing(self._heartbeat(now)))
         return out
 
+    def _convict(self, evidence: Evidence) -> None:
+        """Count a robot out for good that has stated two different things, and tell the others."""
+        robot = evidence.robot
+        if robot in self.revoked or not convicts(evidence, self.signatures):
+            return
+        self.revoked[robot] = evidence
+        self._unsent_evidence.append(evidence)
+        self.notices.tell("revoked", [robot])
+        if robot == self.robot:
+            self._identity.superseded = True  # a copy of this process states things too
+        else:
+            self.members.revoke(robot)
+            self._owned.epoch_due = True
+
+    def _trusted_by(self, message: Message) -> list[str]:
+        """Revoked robots that the sender of a message still counts as members."""
+        members = {robot for said in message.declarations for robot in said.members if said.robot == message.sender}
+        return sorted(members & self.revoked.keys())
+
     def _refuse(self, sender: str, reason: str) -> None:
         """Count what was refused, and tell of it once for each reason."""
         self.counts.refused[sender] += 1
@@ -166,7 +204,7 @@ class Participant:
         """What was remembered, without what no robot can mean; without that the robot does not remember everything."""
 
         def admitted(statements: Iterable[S]) -> tuple[S, ...]:
-            verdicts = [(said, admit(self.rules, said)) for said in statements]
+            verdicts = [(said, admit(self.rules, said, self.signatures)) for said in statements]
             for _, verdict in verdicts:
                 if isinstance(verdict, Refused):
                     self._refuse(self.robot, verdict.reason)
@@ -177,7 +215,7 @@ class Participant:
             claims=admitted(memory.claims),
             facts=admitted(memory.facts),
             reserved=admitted(memory.reserved),
-            epoch=memory.epoch if admit(self.rules, Stage(memory.epoch)) == TAKEN else 0,
+            epoch=memory.epoch if admit(self.rules, Stage(memory.epoch), self.signatures) == TAKEN else 0,
         )
         return kept if kept == memory else replace(kept, knows=False)
 
@@ -203,7 +241,7 @@ class Participant:
     def _declaration(self, number: int, route: tuple[Claim, ...], rounds: int, now: float) -> Declaration:
         """The declaration of this robot in an epoch, with this route and after this number of rounds."""
         members = self.members.present(now)
-        return Declaration(
+        own = Declaration(
             robot=self.robot,
             incarnation=self.incarnation,
             epoch=number,
@@ -214,6 +252,7 @@ class Participant:
             incarnations=tuple(self.incarnation if r == self.robot else self.members.incarnation(r) for r in members),
             knows=self.knows,
         )
+        return self.signatures.sign(own)
 
     def _open(self, own: Declaration, now: float) -> list[Outgoing]:
         """Declare, and begin the auction of this epoch."""
@@ -221,7 +260,7 @@ class Participant:
         refused = frozenset(
             {*self._rules.tasks, *(f.task for f in work.known.facts)} if work.withdrawn else work.refused
         )
-        self.epoch = Epoch(own, self.rules, self.valuer, refused)
+        self.epoch = Epoch(own, self.rules, self.valuer, refused, signatures=self.signatures)
         self._restart_heard = work.epoch_due = False
         work.unsent.clear()  # the declaration contains them
         self._peer_progress.enter()
@@ -238,6 +277,10 @@ class Participant:
             return False
         if self.members.hear_from(message, now):
             self._note_restart(message.sender)
+        for birth in message.births:
+            self.members.hear_birth(birth)
+        for evidence in message.evidence:
+            self._convict(evidence)
         for heartbeat in message.heartbeats:
             self._hear_of(heartbeat, now)
         for said in message.declarations:
@@ -263,10 +306,16 @@ class Participant:
         if correction is None:
             return []
         self.counts.repairs += 1
-        return [Outgoing(self._message(None, heartbeats=(correction,)), message.sender)]
+        told = self._message(None, heartbeats=(correction,), births=self._births([correction]))
+        return [Outgoing(told, message.sender)]
 
     def _hear_of(self, heartbeat: Heartbeat, now: float) -> None:
-        """Note that a robot was alive. For this robot's own id it may be another process, or an earlier incarnation."""
+        """Note that a robot was alive. For this robot's own id it may be another process, or an earlier incarnation.
+
+        Where robots have keys, a later start counts only with its proof.
+        """
+        if self.signatures.has_keys and not self.members.is_born(heartbeat):
+            return
         if heartbeat.robot == self.robot:
             self._identity.may_renumber |= heartbeat.number == 0  # a correction: no rival lives
             if self._identity.renumber_above(heartbeat):
@@ -359,7 +408,8 @@ class Participant:
         return self._message(
             now,
             lacks=self.epoch.lacks,
-            heartbeats=self.members.heartbeats(self._identity.heartbeat, now),
+            heartbeats=(heard := self.members.heartbeats(self._identity.heartbeat, now)),
+            births=self._births(heard),
             unheard=self.members.unheard(now),
             facts=unsent,
             known=self._owned.known.digest,
@@ -373,7 +423,17 @@ class Participant:
             asks_s = self._repairs.asks_s(self._identity.number, len(self.epoch.own.members))
             self._due_s = sent_s + (self.timeouts.heartbeat_s if self.stage.ended else asks_s)
         agreed = tuple(sorted(self._peer_progress.agreed)) if self.stage.ended else ()
+        if sent_s is not None and self._unsent_evidence:
+            said["evidence"], self._unsent_evidence = tuple(self._unsent_evidence), []
         return Message(self.robot, self.incarnation, self._identity.number, self.stage, agreed=agreed, **said)
+
+    def _births(self, heartbeats: Iterable[Heartbeat]) -> tuple[Birth, ...]:
+        """The proofs of the starts that heartbeats name."""
+        if not self.signatures.has_keys:
+            return ()
+        others = (self.members.birth_of(heartbeat) for heartbeat in heartbeats)
+        own = self.signatures.sign(Birth(self.robot, self.incarnation))
+        return (own, *(birth for birth in others if birth is not None))
 
     def _last_sale(self) -> dict[str, Any]:
         """The result of the last round, for members that have missed some of its bids."""
