@@ -144,7 +144,7 @@ class TeamValuer(ABC):
             if before is not None and replace(self._given.tasks[before], position=task.position) != task:
                 raise ParameterError(f"moved task: {shown(task.id)}; expected another position, and else what it is")
         refuse_what_is_not_agreed(whole, self.can)
-        refuse_once_together(whole.tasks, (whole.holds("team"), whole.holds("relation")))
+        refuse_once_together(whole.tasks, (whole.holds("team"), whole.holds("relation")), self._given.tasks)
 
     def misfit(self, tasks: tuple[bytes, ...]) -> str:
         if tasks not in self._misfits:

@@ -74,7 +74,7 @@ class LyingNetwork(MemoryNetwork):
 
 
 def signed(message, keys):
-    """The message with proofs of all that its liar states in it; of what it says that others have stated it has none."""
+    """The message with proofs of all that the liar states in it, but not of what it says that others have stated."""
 
     def own(statement, context=b""):
         return keys.sign(statement, context) if statement.robot == LIAR else statement

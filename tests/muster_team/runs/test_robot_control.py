@@ -1,5 +1,6 @@
 """Robots that decide for themselves do all that can be done, once, whatever happens to them and to their network."""
 
+from dataclasses import replace
 from random import Random
 
 import pytest
@@ -167,7 +168,8 @@ def test_a_new_task_that_is_heard_before_what_it_waits_for_is_done_after_that():
 def test_of_two_places_of_a_task_the_last_holds_though_it_is_heard_first():
     team = SimulatedTeam(square())
     team.run(2.0)
-    first, last = (Task(id="0", position=(x, 5.0), duration_s=0.0) for x in (5.0, 30.0))
+    task = next(task for task in square().tasks if task.id == "0")
+    first, last = (replace(task, position=(x, 5.0)) for x in (5.0, 30.0))
     hear(team, "r_0", Fact("0", "r_1", "moved", 2, content_of(last)))
     team.run(2.2)
     hear(team, "r_0", Fact("0", "r_1", "moved", 1, content_of(first)))
