@@ -17,7 +17,7 @@ from muster_team.knowledge.facts import in_order
 from muster_team.knowledge.messages import ORDERS, Fact
 from muster_team.knowledge.new_tasks import names_in, task_of
 from muster_team.knowledge.rules import Rules
-from muster_team.knowledge.verdicts import TAKEN, Refused, Verdict, Waits
+from muster_team.knowledge.verdicts import TAKEN, Refused, Taken, Verdict, Waits
 
 
 @dataclass
@@ -44,8 +44,8 @@ class Orders:
 
     @property
     def refused(self) -> Mapping[Fact, str]:
-        """The orders that do not count, each with the reason."""
-        return {fact: verdict.reason for fact, verdict in self.verdicts.items() if isinstance(verdict, Refused)}
+        """The orders that do not count, each with the reason; those that wait among them."""
+        return {fact: verdict.reason for fact, verdict in self.verdicts.items() if not isinstance(verdict, Taken)}
 
     def admit(self, fact: Fact) -> Verdict:
         """Look at the next order."""

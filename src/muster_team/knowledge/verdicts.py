@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from muster.mission.value_types import shown
+
 
 @dataclass(frozen=True, slots=True)
 class Taken:
@@ -15,6 +17,10 @@ class Waits:
     """The statement counts as soon as these tasks are known."""
 
     tasks: tuple[str, ...]
+
+    @property
+    def reason(self) -> str:
+        return f"it waits for {', '.join(map(shown, self.tasks))}, which there is not"
 
 
 @dataclass(frozen=True, slots=True)

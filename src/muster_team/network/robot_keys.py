@@ -81,6 +81,7 @@ class RobotKeys(Signatures):
 
 def public_key(key: bytes) -> bytes:
     """The public key that belongs to a robot's key."""
+    require_net("cryptography")
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
     return Ed25519PrivateKey.from_private_bytes(key).public_key().public_bytes_raw()

@@ -1,7 +1,7 @@
 """A team of five of which one sends mutated messages for a while, and then falls silent: what becomes of the others."""
 
 from collections import Counter
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import cache, partial
 from hashlib import blake2b
 from random import Random
@@ -9,6 +9,7 @@ from random import Random
 from tests.muster_team.byzantine.mutations import codec_of, mutated
 from tests.muster_team.networks import line_mission
 from tests.muster_team.trials.random_missions import random_mission, with_times
+from tests.trials import Report
 
 from muster import Task
 from muster.allocation.auctions.auction import Parameters
@@ -25,13 +26,6 @@ LIES_UNTIL_S = 6.0
 QUIET_S = 60.0
 
 
-@dataclass
-class Trial:
-    seed: int
-    sent: int = 0
-    failures: list[str] = field(default_factory=list)
-
-
 @cache
 def secret(robot):
     return blake2b(robot.encode(), digest_size=32).digest()
@@ -46,9 +40,8 @@ def keys_of(robots):
 def problem_of(random):
     kind = random.choice(("line", "once", "random", "timed"))
     if kind in ("line", "once"):
-        return kind, Problem.compile(
-            line_mission(robots=5, tasks=15, once=("3", "8") if kind == "once" else ())
-        ).ready()
+        once = ("3", "8") if kind == "once" else ()
+        return kind, Problem.compile(line_mission(robots=5, tasks=15, once=once)).ready()
     mission = random_mission(random, robots=5, tasks=10, once=0.2)
     return kind, Problem.compile(with_times(mission, random) if kind == "timed" else mission).ready()
 
@@ -89,9 +82,10 @@ def signed(message, keys):
     )
 
 
-def trial(seed):
+def byzantine_trial(seed):
+    """The report of one run."""
     random = Random(seed)
-    told = Trial(seed)
+    report = Report(seed)
     kind, problem = problem_of(random)
     make, terms = random.choice(((negotiator_of, Parameters()), (bundler_of, BundleParameters())))
     if kind == "timed":
@@ -105,25 +99,24 @@ def trial(seed):
         watch=partial(_work, lambda: net, begun, random),
     )
     net.lie_with(codec_of(problem), keys[LIAR], random)
-    try:
+    with report.trying():
         net.start()
         net.run(1.5)
         _order(net, random)
         net.run(LIES_UNTIL_S)
         net.lies = False
         net.crash(LIAR)
-        agreed = net.run(net.now + QUIET_S, lambda: _agree(net))
-    except Exception as error:
-        told.failures.append(f"a robot ended: {type(error).__name__}: {str(error)[:200]}")
-        return told
-    told.sent = net.mutations
-    told.failures += [] if agreed else ["the others do not agree"]
-    told.failures += [f"{robot} was silenced" for robot, node in net.nodes.items() if node.superseded]
+        report.check(net.run(net.now + QUIET_S, lambda: _agree(net)), "the others do not agree")
+    report.counts["mutated"] += net.mutations
+    for robot, node in net.nodes.items():
+        report.check(not node.superseded, f"{robot} was silenced")
+        report.counts["refused"] += node.counts.refused.total()
+        report.counts["found to state two things"] += len(node.revoked)
     owned = Counter(claim.task for node in net.nodes.values() for claim in node.route)
     teams = next(iter(net.nodes.values())).rules.teams
-    told.failures += [f"{task} has {k} owners" for task, k in owned.items() if k > 1 and task not in teams]
-    told.failures += [f"{task} was begun {k} times" for task, k in begun.items() if k > 1]
-    return told
+    report.failures += [f"{task} has {k} owners" for task, k in owned.items() if k > 1 and task not in teams]
+    report.failures += [f"{task} was begun {k} times" for task, k in begun.items() if k > 1]
+    return report
 
 
 def _work(net, begun, random, robot):
