@@ -21,6 +21,8 @@ class Signatures:
     """
 
     has_keys = False
+    team = b""
+    """A digest of the robots' public keys, which all that take part have in common."""
 
     def sign(self, statement: S, context: bytes = b"") -> S:
         """The robot's own statement with its proof; `context` is what it belongs to, such as the base of bids."""

@@ -50,6 +50,7 @@ class RobotKeys(Signatures):
         self._roster: dict[str, Ed25519PublicKey] = {
             robot: Ed25519PublicKey.from_public_bytes(public) for robot, public in roster.items()
         }
+        self.team = blake2b(json.dumps({r: key.hex() for r, key in sorted(roster.items())}).encode()).digest()
         self._held: set[bytes] = set()
 
     def sign(self, statement: S, context: bytes = b"") -> S:
