@@ -113,6 +113,7 @@ class RobotControl:
         self._hand.recall(used)
         self._learned: set[Fact] = set()
         self._answered: set[Fact] = set()  # orders that were refused
+        self._dropped: set[str] = set()  # the tasks of those that were known before
         self._known = 0  # the digest of what was learned
         self._first = 0  # the number of the first event of this tick
         self._left_with: dict[str, tuple[float, float]] = {}  # the usage for tasks broken off, the last time
@@ -133,6 +134,7 @@ class RobotControl:
         self._first = self._executor.events.total
         self._break_off()
         self._learn()
+        self._give_back_dropped()
         wanted = self._wanted
         if not self._hand.out and (wanted != self._hand.route or any(map(self._too_late_for, wanted))):
             self._executor.plan_again(OtherEvent(kind="agreed"))
@@ -290,6 +292,13 @@ class RobotControl:
                 self._refuse(fact.task, f"order: {reason}")
             if fact in self._learned and fact.kind == "added":
                 self._drop(fact.task)
+                self._dropped.add(fact.task)
+
+    def _give_back_dropped(self) -> None:
+        """A task with the name of an order that was dropped is another one, which the executor cannot take in."""
+        for task in filter(self._negotiator.owns, sorted(self._dropped)):
+            self._refuse(task, "its name was that of an order that does not count")
+            self._negotiator.release(task)
 
     def _drop(self, task: str) -> None:
         """A task need not be done any more."""
