@@ -15,6 +15,7 @@ from muster.model.problem import Problem
 from muster_team.knowledge.effects import Notice
 from muster_team.knowledge.messages import Birth, Claim, Fact, Heartbeat, Message, RoundBids, Stage
 from muster_team.knowledge.signatures import Signatures
+from muster_team.knowledge.verdicts import TAKEN
 from muster_team.negotiators import participant
 from muster_team.negotiators.participation import negotiator_of
 from muster_team.network.memory_network import LinkConditions, MemoryNetwork
@@ -114,7 +115,7 @@ def test_who_declares_two_different_things_is_excluded_by_all_for_good():
     hear(net, "r_0", declarations=(other,))
     net.run(net.now + 3)
     honest = [node for name, node in net.nodes.items() if name != "r_4"]
-    assert all(set(node.revoked) == {"r_4"} for node in honest)
+    assert all(node.convicted == {"r_4"} for node in honest)
     assert all("r_4" not in node.epoch.own.members for node in honest)
     assert net.nodes["r_4"].superseded
     net.crash("r_4")
@@ -137,6 +138,6 @@ def test_what_is_not_admitted_changes_nothing(monkeypatch):
     before = node.memory, node.stage, node.known
     hear(net, "r_0", facts=(KEYS["r_4"].sign(Fact("x", "r_4", "added", 5, b"no task")),))
     assert (node.memory, node.stage, node.known) == before
-    monkeypatch.setattr(participant, "admit", lambda *said: participant.TAKEN)
+    monkeypatch.setattr(participant, "admit", lambda *said: TAKEN)
     hear(net, "r_0", facts=(KEYS["r_4"].sign(Fact("x", "r_4", "added", 5, b"no task")),))
     assert node.known != before[2]

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import replace
 from typing import Any
 
 from muster.mission.errors import MissionError
 from muster.mission.value_types import shown
+from muster_team.knowledge.effects import Memory
 from muster_team.knowledge.joint_statements import presence_fault
 from muster_team.knowledge.messages import (
     FACTS,
@@ -57,6 +59,28 @@ def admit(rules: Rules, statement: Statement, signatures: Signatures = NO_KEYS) 
     if fault is None and isinstance(statement, Fact) and not signatures.holds(statement):
         fault = f"a fact that {shown(statement.robot)} has not stated"
     return TAKEN if fault is None else Refused(fault)
+
+
+def healed(memory: Memory, rules: Rules, signatures: Signatures) -> tuple[Memory, list[str]]:
+    """What was remembered, without what no robot can mean, and why that was left out.
+
+    A robot that has lost something so does not count as one that remembers everything.
+    """
+    refused: list[str] = []
+
+    def is_admitted(statement: Statement) -> bool:
+        verdict = admit(rules, statement, signatures)
+        refused.extend([verdict.reason] if isinstance(verdict, Refused) else [])
+        return isinstance(verdict, Taken)
+
+    kept = replace(
+        memory,
+        claims=tuple(filter(is_admitted, memory.claims)),
+        facts=tuple(filter(is_admitted, memory.facts)),
+        reserved=tuple(filter(is_admitted, memory.reserved)),
+        epoch=memory.epoch if is_admitted(Stage(memory.epoch)) else 0,
+    )
+    return replace(kept, knows=kept.knows and not refused), refused
 
 
 def _faults(rules: Rules, statement: Statement) -> Iterator[str]:

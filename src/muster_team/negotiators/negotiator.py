@@ -35,6 +35,11 @@ class Negotiator(Participant):
         return self._identity.superseded
 
     @property
+    def convicted(self) -> frozenset[str]:
+        """Robots that have stated two different things."""
+        return frozenset(self._convictions.evidence)
+
+    @property
     def facts(self) -> frozenset[Fact]:
         """All facts that the robot knows."""
         return frozenset(self._owned.known.facts)

@@ -15,11 +15,11 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import repeat
-from typing import Any, TypeVar
+from typing import Any
 
 from muster_team.auctions.epoch import Epoch
 from muster_team.auctions.valuation import Valuer
-from muster_team.knowledge.admission import admit
+from muster_team.knowledge.admission import admit, healed
 from muster_team.knowledge.effects import Counts, Memory, Notice, Notices, Outgoing
 from muster_team.knowledge.epoch_base import Base
 from muster_team.knowledge.facts import in_order
@@ -34,8 +34,9 @@ from muster_team.knowledge.messages import (
     Stage,
 )
 from muster_team.knowledge.rules import Rules
-from muster_team.knowledge.signatures import NO_KEYS, Signatures, convicts
-from muster_team.knowledge.verdicts import TAKEN, Refused
+from muster_team.knowledge.signatures import NO_KEYS, Signatures
+from muster_team.knowledge.verdicts import Refused
+from muster_team.membership.convictions import Convictions
 from muster_team.membership.identity import Identity
 from muster_team.membership.members import Members, Timeouts
 from muster_team.membership.peer_progress import PeerProgress
@@ -45,8 +46,6 @@ from muster_team.negotiators.repairs import Repairs
 
 LEAP = 2**20
 """The most epochs that a robot goes on at once. So no number that arrives uses up all that there are."""
-
-S = TypeVar("S", Claim, Fact)
 
 
 @dataclass
@@ -84,12 +83,13 @@ class Participant:
 
     def __post_init__(self) -> None:
         self.rules = replace(self.rules, misfit=self.valuer.misfit)
-        self.revoked: dict[str, Evidence] = {}
-        self._unsent_evidence: list[Evidence] = []
+        self._convictions = Convictions(self.signatures)
         self.members = Members(self.robot, self.timeouts)
         self.counts = Counts()
         self.notices = Notices()
-        memory = self._healed(self.remembered or Memory(knows=not self.forgot))
+        memory, refused = healed(self.remembered or Memory(knows=not self.forgot), self.rules, self.signatures)
+        for reason in refused:
+            self._refuse(self.robot, reason)
         self.epochs: list[Epoch] = []  # those of which the base was found
         self.knows = memory.knows
         self._before = memory
@@ -153,8 +153,8 @@ class Participant:
             self._refuse(robot or message.sender, reason)
         for evidence in self.epoch.take_evidence():
             self._convict(evidence)
-        if self.revoked and (names := self._trusted_by(message)):
-            out.append(Outgoing(self._message(None, evidence=tuple(self.revoked[r] for r in names)), message.sender))
+        if unknown := self._convictions.unknown_to(message):
+            out.append(Outgoing(self._message(None, evidence=unknown), message.sender))
         if self._restart_heard and self._is_outdated():
             out += self._enter(self.epoch.own.epoch + 1, now)
         self._peer_progress.hear(message, self.epoch.stage)
@@ -178,46 +178,19 @@ class Participant:
 
     def _convict(self, evidence: Evidence) -> None:
         """Count a robot out for good that has stated two different things, and tell the others."""
-        robot = evidence.robot
-        if robot in self.revoked or not convicts(evidence, self.signatures):
+        if not self._convictions.convict(evidence):
             return
-        self.revoked[robot] = evidence
-        self._unsent_evidence.append(evidence)
-        self.notices.tell("revoked", [robot])
-        if robot == self.robot:
+        self.notices.tell("revoked", [evidence.robot])
+        if evidence.robot == self.robot:
             self._identity.superseded = True  # a copy of this process states things too
         else:
-            self.members.revoke(robot)
+            self.members.revoke(evidence.robot)
             self._owned.epoch_due = True
-
-    def _trusted_by(self, message: Message) -> list[str]:
-        """Revoked robots that the sender of a message still counts as members."""
-        members = {robot for said in message.declarations for robot in said.members if said.robot == message.sender}
-        return sorted(members & self.revoked.keys())
 
     def _refuse(self, sender: str, reason: str) -> None:
         """Count what was refused, and tell of it once for each reason."""
         self.counts.refused[sender] += 1
         self.notices.tell_refused(sender, reason)
-
-    def _healed(self, memory: Memory) -> Memory:
-        """What was remembered, without what no robot can mean; without that the robot does not remember everything."""
-
-        def admitted(statements: Iterable[S]) -> tuple[S, ...]:
-            verdicts = [(said, admit(self.rules, said, self.signatures)) for said in statements]
-            for _, verdict in verdicts:
-                if isinstance(verdict, Refused):
-                    self._refuse(self.robot, verdict.reason)
-            return tuple(said for said, verdict in verdicts if not isinstance(verdict, Refused))
-
-        kept = replace(
-            memory,
-            claims=admitted(memory.claims),
-            facts=admitted(memory.facts),
-            reserved=admitted(memory.reserved),
-            epoch=memory.epoch if admit(self.rules, Stage(memory.epoch), self.signatures) == TAKEN else 0,
-        )
-        return kept if kept == memory else replace(kept, knows=False)
 
     @property
     def _base(self) -> Base | None:
@@ -423,8 +396,8 @@ class Participant:
             asks_s = self._repairs.asks_s(self._identity.number, len(self.epoch.own.members))
             self._due_s = sent_s + (self.timeouts.heartbeat_s if self.stage.ended else asks_s)
         agreed = tuple(sorted(self._peer_progress.agreed)) if self.stage.ended else ()
-        if sent_s is not None and self._unsent_evidence:
-            said["evidence"], self._unsent_evidence = tuple(self._unsent_evidence), []
+        if sent_s is not None and (evidence := self._convictions.take_unsent()):
+            said["evidence"] = evidence
         return Message(self.robot, self.incarnation, self._identity.number, self.stage, agreed=agreed, **said)
 
     def _births(self, heartbeats: Iterable[Heartbeat]) -> tuple[Birth, ...]:

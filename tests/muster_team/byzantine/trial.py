@@ -111,7 +111,7 @@ def byzantine_trial(seed):
     for robot, node in net.nodes.items():
         report.check(not node.superseded, f"{robot} was silenced")
         report.counts["refused"] += node.counts.refused.total()
-        report.counts["found to state two things"] += len(node.revoked)
+        report.counts["found to state two things"] += len(node.convicted)
     owned = Counter(claim.task for node in net.nodes.values() for claim in node.route)
     teams = next(iter(net.nodes.values())).rules.teams
     report.failures += [f"{task} has {k} owners" for task, k in owned.items() if k > 1 and task not in teams]
