@@ -22,9 +22,14 @@ def was_cancelled(reason: object) -> bool:
     return str(reason).startswith(_CANCELLED)
 
 
+def has_stand_in(reason: object) -> bool:
+    """Whether a task is not done because another is in its place."""
+    return str(reason).endswith(IN_ITS_PLACE)
+
+
 def is_no_loss(reason: object) -> bool:
     """Whether a task that is not done was not to be done any more: it was cancelled, or another is in its place."""
-    return was_cancelled(reason) or str(reason).endswith(IN_ITS_PLACE)
+    return was_cancelled(reason) or has_stand_in(reason)
 
 
 def begins_with(other: str) -> str:
