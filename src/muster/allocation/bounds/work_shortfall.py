@@ -3,27 +3,32 @@
 Each member of a task's team works on it for no less than its least work, whatever the plan; ways come on top. So the
 work of tasks that a group of robots alone can do, each task as often as it has members, is no more than what the group
 has in all: of time up to when routes or tasks are over at the latest, of usage, or of energy that no station gives.
+Where there is enough in all, the same is asked of intervals of time, with the least legs between tasks.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 import numpy as np
 
+from muster.allocation.bounds.interval_work import IntervalWork, Overload
 from muster.allocation.bounds.usage_bounds import UsageBounds
 from muster.mission.texts.counting import counted
 from muster.model.problem import Bools, Floats, Problem
 from muster.model.rules import all_rules
 from muster.model.rules.rule import ROUNDING, listed
+from muster.model.rules.times import moments
 
 _MOST_KINDS = 6  # of tasks by who can do them, up to which two kinds are looked at together
 _MOST_NAMED = 6  # robots
 _MOST_SAID = 3  # shortfalls, those that lack most
+_MOST_GROUPS = 24  # of robots, the largest first, whose intervals are looked at
+_MOST_REFUSALS = 2  # of the other robots
 _LARGE = 1e-9
 
 
@@ -42,9 +47,19 @@ class Shortfall:
     needed, available, unit
         the work of the tasks and what the robots have, `robot-seconds` or the unit of usage.
     left_out
-        how many of the tasks every plan leaves out at least.
+        how many of the tasks every plan leaves out at least, beside the alternatives.
     more_robots
         how many more robots, each with as much as the one of the group that has most, are needed at least.
+    travel
+        what the ways between the tasks take at least.
+    when
+        the interval of time to which all of it is confined; empty: none.
+    alternatives
+        how many of the tasks no plan does, as it does others in their place.
+    shared
+        whether other robots can do some of the tasks' teams, but not all.
+    refusals
+        why no other robots can do the tasks, as rules say; empty: too many reasons, or none that is about robots.
     """
 
     resource: str
@@ -56,19 +71,24 @@ class Shortfall:
     unit: str
     left_out: int
     more_robots: int
+    travel: float = 0.0
+    when: str = ""
+    alternatives: int = 0
+    shared: bool = False
+    refusals: tuple[str, ...] = ()
 
     @property
     def lacking(self) -> float:
-        """How much is short before any travel."""
-        return self.needed - self.available
+        """How much is short; without intervals, before any travel."""
+        return self.needed + self.travel - self.available
 
     @property
     def detail(self) -> str:
         """The proof in words."""
-        return (
-            f"{self._who()}{_amount(self.needed)} {self.unit} of work in {_amount(self.available)} of {self._of()}:"
-            f" {_amount(self.lacking)} {self.unit} short before any travel"
-        )
+        work = f"{self._who()}{_amount(self.needed)} {self.unit} of work"
+        travel = f" and at least {_amount(self.travel)} of ways between" if self.travel else ""
+        short = f"{_amount(self.lacking)} {self.unit} short{'' if self.travel else ' before any travel'}"
+        return f"{work}{travel} in {_amount(self.available)} of {self._of()}: {short}"
 
     @property
     def least(self) -> str:
@@ -84,9 +104,11 @@ class Shortfall:
     def from_dict(cls, data: Mapping[str, Any]) -> Shortfall:
         """Read the result of `as_dict`, also from JSON."""
         named = {field.name: data[field.name] for field in fields(cls)}
-        return cls(**{**named, "robots": tuple(named["robots"]), "tasks": tuple(named["tasks"])})
+        return cls(**{**named, **{name: tuple(named[name]) for name in ("robots", "tasks", "refusals")}})
 
     def _of(self) -> str:
+        if self.when:
+            return f"{_OF_TASKS} {self.when}"
         return dict(filter(None, (rule.resource for rule in all_rules()))).get(self.resource, self.resource)
 
     def _who(self) -> str:
@@ -94,21 +116,83 @@ class Shortfall:
             return ""
         more = len(self.robots) - _MOST_NAMED
         names = f"{listed(self.robots[:_MOST_NAMED])}{f' and {more} more' if more > 0 else ''}"
-        return f"{counted(len(self.tasks), 'task')} that only {names} can do: "
+        why = f" (others: {'; '.join(self.refusals)})" if self.refusals else ""
+        can = f"{names} must do, at least in part" if self.shared else f"only {names} can do"
+        return f"{counted(len(self.tasks), 'task')} that {can}{why}: "
 
 
 def shortfalls(problem: Problem, tasks: Sequence[int], bounds: UsageBounds | None = None) -> tuple[Shortfall, ...]:
-    """Return the proofs by sums that no plan does all of some tasks, those that lack most first."""
+    """Return the proofs by sums that no plan does all of some tasks, those that lack most first.
+
+    Of tasks that exclude each other plans are meant that do one. Of proofs about one resource none has a task of one
+    before it.
+    """
     bounds = bounds or UsageBounds(problem)
     if not tasks:
         return ()
-    found = [
-        short
-        for resource in _resources(problem, bounds.possible, tasks)
-        for group in _groups(bounds.possible, tasks)
-        if (short := resource.shortfall(group, tasks)) is not None
-    ]
-    return tuple(sorted(found, key=lambda short: -short.lacking / short.needed)[:_MOST_SAID])
+    groups = list(_groups(bounds.possible, tasks))
+    found = list[Shortfall]()
+    for resource in _resources(problem, bounds.possible, tasks):
+        short = [one for group in groups if (one := resource.shortfall(group, tasks)) is not None]
+        found += _apart(short)
+    in_all = [short for short in found if short.unit == _SECONDS]
+    found += _apart(_in_intervals(bounds, groups, tasks), in_all)
+    return tuple(found[:_MOST_SAID])
+
+
+def _apart(found: Iterable[Shortfall], known: Sequence[Shortfall] = ()) -> list[Shortfall]:
+    """The shortfalls, that which lacks most first, without those that share tasks with one before."""
+    taken, kept = {task for short in known for task in short.tasks}, list[Shortfall]()
+    for short in sorted(found, key=lambda short: -short.lacking / (short.needed + short.travel)):
+        if taken.isdisjoint(short.tasks):
+            kept.append(short)
+            taken.update(short.tasks)
+    return kept
+
+
+def _in_intervals(bounds: UsageBounds, groups: Sequence[frozenset[int]], tasks: Sequence[int]) -> Iterator[Shortfall]:
+    """The shortfalls of time in intervals."""
+    if bounds.limits.is_timed:
+        works = IntervalWork(bounds.limits, tasks)
+        for overload in works.overloads([group for group in groups if group][:_MOST_GROUPS]):
+            yield _in_interval(bounds.problem, overload, bounds.possible, works.is_of_all)
+
+
+def _in_interval(problem: Problem, found: Overload, usable: Bools, of_all: Bools) -> Shortfall:
+    own, lacking = np.flatnonzero(found.work > 0).tolist(), found.lacking
+    begins, ends = moments(problem, found.begins, found.ends)
+    alone = not of_all[own].any()  # else one task left out gives another one time
+    most = float(found.available.max()) + float(found.legs.max(initial=0.0))
+    outside = np.ones(len(problem.robots), np.bool_)
+    outside[list(found.group)] = False
+    named = _named(problem, found.group, own)
+    return Shortfall(
+        resource=_OF_TASKS,
+        **named,
+        needed=float(found.work.sum()),
+        available=float(found.available.sum()),
+        unit=_SECONDS,
+        left_out=_fewest((found.work + found.legs)[own].tolist(), lacking) if alone and not named["alternatives"] else 1,
+        more_robots=math.ceil(lacking / most * (1 - ROUNDING)) if most > 0 else len(own),
+        travel=found.travel,
+        when=f"between {begins} and {ends}",
+        shared=bool(usable[outside][:, own].any()),
+    )
+
+
+def _named(problem: Problem, group: frozenset[int], tasks: Sequence[int]) -> dict[str, Any]:
+    """Who is short, and with which tasks: of those that exclude each other all."""
+    whole = set(tasks).union(*(alike for alike in problem.model.alternatives if not set(alike).isdisjoint(tasks)))
+    outside = [i for i in range(len(problem.robots)) if i not in group]
+    refused = dict.fromkeys(problem.refusal(i, j) for i in outside for j in tasks)
+    said = tuple(f"{word}, {detail}" for word, detail in filter(None, refused))
+    return {
+        "robots": tuple(robot.id for robot in problem.mission.robots if problem.robot_index[robot.id] in group),
+        "tasks": tuple(task.id for task in problem.mission.tasks if problem.task_index[task.id] in whole),
+        "everyone": not outside,
+        "alternatives": len(whole) - len(tasks),
+        "refusals": said if len(said) <= _MOST_REFUSALS and None not in refused else (),
+    }
 
 
 def _groups(possible: Bools, tasks: Sequence[int]) -> Iterator[frozenset[int]]:
@@ -138,21 +222,19 @@ class _Resource:
         available = float(self.has[robots].sum())
         if not own or not robots or not math.isfinite(available):
             return None
-        works = [self._least(j) for j in own]
-        needed = sum(works)
+        works = _one_of_each(problem, {j: self._least(j) for j in own}, tasks)
+        needed = sum(works.values())
         if needed <= available * (1 + ROUNDING) + _LARGE:
             return None
         most = float(self.has[robots].max())
         lacking = needed - available
         return Shortfall(
             resource=_OF_TASKS if self.by_tasks is not None and self.by_tasks[robots].any() else self.name,
-            robots=tuple(robot.id for robot in problem.mission.robots if problem.robot_index[robot.id] in group),
-            tasks=tuple(task.id for task in problem.mission.tasks if problem.task_index[task.id] in set(own)),
-            everyone=len(robots) == len(problem.robots),
+            **_named(problem, group, list(works)),
             needed=needed,
             available=available,
             unit=self.unit,
-            left_out=_fewest(works, lacking),
+            left_out=_fewest(list(works.values()), lacking),
             more_robots=math.ceil(lacking / most * (1 - ROUNDING)) if most > 0 else len(own),
         )
 
@@ -164,6 +246,16 @@ class _Resource:
             return 0.0
         as_long = self.unit == _SECONDS or self.problem.in_time
         return float(least[-1] * count if as_long else least.sum())
+
+
+def _one_of_each(problem: Problem, works: Mapping[int, float], tasks: Sequence[int]) -> Mapping[int, float]:
+    """The works of tasks, of those that exclude each other the least; of sets with others of the tasks, none."""
+    kept, chosen = dict(works), set(tasks)
+    for alike in problem.model.alternatives:
+        own = chosen.intersection(alike)
+        least = min(own, key=lambda j: (works[j], j)) if own and own <= works.keys() else -1
+        kept = {j: work for j, work in kept.items() if j == least or j not in own}
+    return kept
 
 
 _SECONDS = "robot-seconds"

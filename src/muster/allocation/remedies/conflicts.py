@@ -78,7 +78,7 @@ def together(problem: Problem, judge: Judge, *, time_limit: float = 2.0, clock: 
         return Together(unknown=True)
     tasks = _possible(problem)
     sure, bounds = _in_every_plan(problem, tasks), UsageBounds(problem)
-    if short := shortfalls(problem, sure, bounds):
+    if short := shortfalls(problem, tasks, bounds):
         proven = _proven(bounds, sure, (), left)
         return Together(None if proven is None else _minimal(bounds, proven, judge, left, clock), shortfalls=short)
     for seed in itertools.count():
@@ -99,7 +99,7 @@ def without_search(problem: Problem) -> Together:
     """Return what sums of work alone prove, at once; in a very large problem that is not looked at."""
     if len(problem.robots) * len(problem.tasks) > _MOST_PAIRS:
         return Together(unknown=True)
-    short = shortfalls(problem, _in_every_plan(problem, _possible(problem)))
+    short = shortfalls(problem, _possible(problem))
     return Together(unknown=not short, shortfalls=short)
 
 

@@ -39,6 +39,12 @@ bool StationCalls::cross(int robot, Labels& labels, int from, int to, double res
   const double beyond = rest_before - problem_.travel_usage(robot, from, to);
   places_ = current_;
   if (has_few_) call_again(robot, labels, to, beyond);
+  if (has_few_ && unloads_ && problem_.energy(robot) < kNever) {
+    // A robot may refill, unload and refill again: two calls reach the stop, but three may cost less.
+    const std::vector<int> twice = current_;
+    call_again(robot, labels, to, beyond);
+    current_ = twice;
+  }
   settle();
   for (int depth = has_few_ ? 2 : 1; depth <= problem_.stations(); ++depth) {
     double most = -kNever;
