@@ -1,11 +1,12 @@
 """Random tiny missions in which robots have hardly enough time for their tasks, by seed."""
 
+import json
 from random import Random
 
 from muster import MissionError
 from muster.mission.reading.yaml_reader import parse_yaml
-import json
 
+KINDS = ("window", "deadline", "shift", "skill", "team", "either", "lag", "duty")
 _SIDE = 12
 
 
@@ -22,7 +23,7 @@ def tight_mission(seed, most=4):
 
 def _mission(random, seed, most):
     robots, tasks = random.choice((1, 2, 2, 2, 3)), random.randint(2, most)
-    has = {key: random.random() < 0.4 for key in ("window", "deadline", "shift", "skill", "team", "either", "lag", "duty")}
+    has = {key: random.random() < 0.4 for key in KINDS}
     has["shift"] |= not (has["window"] or has["deadline"])
     rules = {"return_to_start": random.random() < 0.4, "timing": "constant"}
     made = {"schema": "muster/1", "name": f"tight-{seed}", "rules": rules}
@@ -46,7 +47,8 @@ def _robot(random, k, has):
         robot |= {"available_from_s": begins, "available_until_s": ends}
         if random.random() < 0.2:
             robot = {key: value for key, value in robot.items() if not key.startswith("available")}
-            robot["shifts_s"] = [[begins, begins + random.randint(6, 15)], [begins + 20, begins + random.randint(25, 40)]]
+            first, last = random.randint(6, 15), random.randint(25, 40)
+            robot["shifts_s"] = [[begins, begins + first], [begins + 20, begins + last]]
     if has["duty"] and random.random() < 0.5:
         robot["longest_duty_s"] = random.randint(12, 40)
     return robot

@@ -335,7 +335,7 @@ def test_check_names_them_in_json(chain, capsys):
     out, err = capsys.readouterr()
     assert err == ""
     data = json.loads(out)
-    others = [data.pop(key) for key in ("conflict", "unknown", "shortfalls", "unseen", "blocked", "cut_off")]
+    others = [data.pop(key) for key in ("conflict", "unknown", "shortfalls", "remedies", "unseen", "blocked", "cut_off")]
     assert others == [None, False, [], [], [], []]
     assert data == {
         "errors": [],

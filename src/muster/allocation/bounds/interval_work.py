@@ -80,7 +80,7 @@ class IntervalWork:
         chosen = np.zeros(len(self._problem.tasks), np.bool_)
         chosen[list(tasks)] = True
         self._usable = limits.usable & chosen & np.isfinite(limits.begin)
-        self._chosen = self._usable.any(axis=0)
+        self._chosen = np.asarray(self._usable.any(axis=0))
         self._members = [self._rules.least_members(j) for j in range(len(chosen))]
 
     # --- times of tasks and robots -----------------------------------------------------------------------------------
@@ -123,10 +123,26 @@ class IntervalWork:
                 break
         return latest
 
+    def forcing(self, tasks: Sequence[int]) -> list[int]:
+        """The other tasks because of which some begin so early: what waits for them, directly or through others."""
+        rules, found = self._rules, set[int]()
+        waiting = [j for j in tasks if self._latest[j] < self._latest_alone[j]]
+        while waiting:
+            j = waiting.pop()
+            tied = [*rules.beginning_with(j), *(k for k, _, within in rules.gaps(j) if math.isfinite(within))]
+            new = {*tied, *(k for k in self._followers[j] if not rules.exclusive[k])} - found
+            found |= new
+            waiting += new
+        return sorted(found.difference(tasks))
+
     @cached_property
-    def is_of_all(self) -> Bools:
-        """(n,) whether a task begins so early only because others are done."""
-        return np.asarray(self._latest < self._latest_alone)
+    def _followers(self) -> list[list[int]]:
+        """For each task those that wait for it."""
+        found: list[list[int]] = [[] for _ in self._members]
+        for j in np.flatnonzero(self._chosen).tolist():
+            for k in self._rules.awaited[j]:
+                found[k].append(j)
+        return found
 
     @cached_property
     def _begins(self) -> tuple[Floats, Indices]:
@@ -259,7 +275,7 @@ class IntervalWork:
         """The work of tasks, nothing for all of those that exclude each other but one with least."""
         left = work.copy()
         for alike in self._alternatives:
-            least = work[..., alike].argmin(axis=-1)[..., None] == np.arange(len(alike))
+            least = np.asarray(work[..., alike].argmin(axis=-1))[..., None] == np.arange(len(alike))
             left[..., alike] = np.where(least, work[..., alike], 0.0)
         for j in self._open_alternatives:
             left[..., j] = 0.0
@@ -290,7 +306,7 @@ class IntervalWork:
         for g, group in enumerate(groups):
             legs = self._legs_to(group)
             order = np.argsort(-legs)
-            copies = inside[:, order] * members[g, order]
+            copies = np.asarray(inside[:, order] * members[g, order])
             before = np.cumsum(copies, axis=1) - copies
             kept = np.clip(copies - np.maximum(0.0, len(group) - before), 0.0, None)
             found[:, g] = kept @ legs[order]
@@ -300,7 +316,8 @@ class IntervalWork:
         """(ends, placed) 1 where a task that every plan does begins in an interval; else 0."""
         first, last = self._limits.begin[self._placed], self._latest[self._placed]
         alone = np.array([not self._rules.exclusive[j] for j in self._placed.tolist()])
-        return np.asarray(((first >= a) & alone & (last[None] <= ends[:, None])).astype(np.float64))
+        within = np.asarray((first >= a) & alone & (last[None] <= ends[:, None]))
+        return within.astype(np.float64)
 
     def _legs_to(self, group: Group) -> Floats:
         """(placed,) the least leg of robots of a group to each task."""

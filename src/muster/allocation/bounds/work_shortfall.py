@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -25,11 +25,13 @@ from muster.model.rules.rule import ROUNDING, listed
 from muster.model.rules.times import moments
 
 _MOST_KINDS = 6  # of tasks by who can do them, up to which two kinds are looked at together
-_MOST_NAMED = 6  # robots
+_MOST_NAMED = 6  # robots, or tasks
 _MOST_SAID = 3  # shortfalls, those that lack most
 _MOST_GROUPS = 24  # of robots, the largest first, whose intervals are looked at
 _MOST_REFUSALS = 2  # of the other robots
 _LARGE = 1e-9
+Forcing = Callable[[Sequence[int]], Sequence[int]]
+"""For some tasks the others because of which they begin so early."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,8 +60,12 @@ class Shortfall:
         how many of the tasks no plan does, as it does others in their place.
     shared
         whether other robots can do some of the tasks' teams, but not all.
+    after
+        the tasks that leave these no more time, as they come after them: of all together some are left out.
     refusals
         why no other robots can do the tasks, as rules say; empty: too many reasons, or none that is about robots.
+    with_ways
+        how much is short of the same where ways between tasks are counted; 0: not known.
     """
 
     resource: str
@@ -75,7 +81,9 @@ class Shortfall:
     when: str = ""
     alternatives: int = 0
     shared: bool = False
+    after: tuple[str, ...] = ()
     refusals: tuple[str, ...] = ()
+    with_ways: float = 0.0
 
     @property
     def lacking(self) -> float:
@@ -96,6 +104,12 @@ class Shortfall:
         more = f"{_amount(self.lacking)} {self.unit} of {self._of()}, or {counted(self.more_robots, 'more robot')}"
         return f"least to add: {more}; or leave out at least {counted(self.left_out, 'task')}"
 
+    @property
+    def more(self) -> tuple[str, ...]:
+        """What is known beside the proof, in lines."""
+        ways = f"  with the ways between tasks {_amount(self.with_ways)} {self.unit} short"
+        return (f"  {self.least}", *((ways,) if self.with_ways else ()))
+
     def as_dict(self) -> dict[str, Any]:
         """Return the shortfall as plain data, with what is lacking and the words for it."""
         return {**asdict(self), "lacking": self.lacking, "detail": self.detail, "least": self.least}
@@ -104,7 +118,7 @@ class Shortfall:
     def from_dict(cls, data: Mapping[str, Any]) -> Shortfall:
         """Read the result of `as_dict`, also from JSON."""
         named = {field.name: data[field.name] for field in fields(cls)}
-        return cls(**{**named, **{name: tuple(named[name]) for name in ("robots", "tasks", "refusals")}})
+        return cls(**{**named, **{name: tuple(named[name]) for name in ("robots", "tasks", "after", "refusals")}})
 
     def _of(self) -> str:
         if self.when:
@@ -112,13 +126,18 @@ class Shortfall:
         return dict(filter(None, (rule.resource for rule in all_rules()))).get(self.resource, self.resource)
 
     def _who(self) -> str:
-        if self.everyone:
-            return ""
-        more = len(self.robots) - _MOST_NAMED
-        names = f"{listed(self.robots[:_MOST_NAMED])}{f' and {more} more' if more > 0 else ''}"
         why = f" (others: {'; '.join(self.refusals)})" if self.refusals else ""
-        can = f"{names} must do, at least in part" if self.shared else f"only {names} can do"
-        return f"{counted(len(self.tasks), 'task')} that {can}{why}: "
+        names = _few(self.robots)
+        can = f"that {names} must do, at least in part" if self.shared else f"that only {names} can do{why}"
+        before = f"before {_few(self.after)}" if self.after else ""
+        said = ", ".join(filter(None, ("" if self.everyone else can, before)))
+        return f"{counted(len(self.tasks), 'task')} {said}: " if said else ""
+
+
+def _few(names: Sequence[str]) -> str:
+    """The first of some names, and how many more there are."""
+    more = len(names) - _MOST_NAMED
+    return f"{listed(names[:_MOST_NAMED])}{f' and {more} more' if more > 0 else ''}"
 
 
 def shortfalls(problem: Problem, tasks: Sequence[int], bounds: UsageBounds | None = None) -> tuple[Shortfall, ...]:
@@ -135,9 +154,17 @@ def shortfalls(problem: Problem, tasks: Sequence[int], bounds: UsageBounds | Non
     for resource in _resources(problem, bounds.possible, tasks):
         short = [one for group in groups if (one := resource.shortfall(group, tasks)) is not None]
         found += _apart(short)
-    in_all = [short for short in found if short.unit == _SECONDS]
-    found += _apart(_in_intervals(bounds, groups, tasks), in_all)
+    in_intervals = list(_in_intervals(bounds, groups, tasks))
+    found = [_with_ways(short, in_intervals) for short in found]
+    found += _apart(in_intervals, [short for short in found if short.unit == _SECONDS])
     return tuple(found[:_MOST_SAID])
+
+
+def _with_ways(short: Shortfall, others: Sequence[Shortfall]) -> Shortfall:
+    """The shortfall with what is short of the same work once ways are counted, too."""
+    same = [o.lacking for o in others if o.travel and not o.after and set(o.tasks) <= set(short.tasks)]
+    most = max(same, default=0.0) if short.unit == _SECONDS else 0.0
+    return replace(short, with_ways=most) if most > short.lacking else short
 
 
 def _apart(found: Iterable[Shortfall], known: Sequence[Shortfall] = ()) -> list[Shortfall]:
@@ -155,13 +182,13 @@ def _in_intervals(bounds: UsageBounds, groups: Sequence[frozenset[int]], tasks: 
     if bounds.limits.is_timed:
         works = IntervalWork(bounds.limits, tasks)
         for overload in works.overloads([group for group in groups if group][:_MOST_GROUPS]):
-            yield _in_interval(bounds.problem, overload, bounds.possible, works.is_of_all)
+            yield _in_interval(bounds.problem, overload, bounds.possible, works.forcing)
 
 
-def _in_interval(problem: Problem, found: Overload, usable: Bools, of_all: Bools) -> Shortfall:
-    own, lacking = np.flatnonzero(found.work > 0).tolist(), found.lacking
+def _in_interval(problem: Problem, found: Overload, usable: Bools, forcing: Forcing) -> Shortfall:
+    own, lacking = np.flatnonzero((found.work > 0) | (found.legs > 0)).tolist(), found.lacking
     begins, ends = moments(problem, found.begins, found.ends)
-    alone = not of_all[own].any()  # else one task left out gives another one time
+    after = forcing(own)  # one of these left out gives others time
     most = float(found.available.max()) + float(found.legs.max(initial=0.0))
     outside = np.ones(len(problem.robots), np.bool_)
     outside[list(found.group)] = False
@@ -172,11 +199,12 @@ def _in_interval(problem: Problem, found: Overload, usable: Bools, of_all: Bools
         needed=float(found.work.sum()),
         available=float(found.available.sum()),
         unit=_SECONDS,
-        left_out=_fewest((found.work + found.legs)[own].tolist(), lacking) if alone and not named["alternatives"] else 1,
+        left_out=_fewest((found.work + found.legs)[own].tolist(), lacking) if not after and not named["alternatives"] else 1,
         more_robots=math.ceil(lacking / most * (1 - ROUNDING)) if most > 0 else len(own),
         travel=found.travel,
         when=f"between {begins} and {ends}",
         shared=bool(usable[outside][:, own].any()),
+        after=tuple(task.id for task in problem.mission.tasks if problem.task_index[task.id] in after),
     )
 
 

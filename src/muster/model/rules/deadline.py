@@ -27,6 +27,9 @@ class LaterDeadline(Later):
     def short(self) -> str:
         return f"a deadline {longer(self.seconds)} later"
 
+    def of_several(self, whose: str, seconds: float) -> str:
+        return f"deadlines of {whose} {longer(seconds)} later"
+
     @property
     def line(self) -> str:
         return f"{self.short}, at {span(self.until_s or 0.0)}: {known_least(self.until_s, self.at_least_s)}"

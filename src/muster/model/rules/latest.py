@@ -29,6 +29,10 @@ class Later(Change):
     def plain(self) -> Mapping[str, float | None]:
         return {self.limit_key: self.limit_s, "until_s": self.until_s, "at_least_s": self.at_least_s}
 
+    def of_several(self, whose: str, seconds: float) -> str:
+        """The change of several limits of the sort, each by so much, in words; `whose` names robots, or counts tasks."""
+        raise NotImplementedError
+
     @property
     def seconds(self) -> float:
         return math.inf if self.until_s is None else self.until_s - self.limit_s

@@ -33,6 +33,9 @@ class LongerShift(Later):
     def short(self) -> str:
         return f"a shift until {self.said}"
 
+    def of_several(self, whose: str, seconds: float) -> str:
+        return f"shifts of {whose} {longer(seconds)} longer"
+
     @property
     def line(self) -> str:
         return f"{self.short}, {longer(self.seconds)} longer: {known_least(self.until_s, self.at_least_s)}"

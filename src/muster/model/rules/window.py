@@ -27,6 +27,9 @@ class LongerWindow(Later):
     def short(self) -> str:
         return f"a window {longer(self.seconds)} longer"
 
+    def of_several(self, whose: str, seconds: float) -> str:
+        return f"windows of {whose} {longer(seconds)} longer"
+
     @property
     def line(self) -> str:
         return f"{self.short}, until {span(self.until_s or 0.0)}: {known_least(self.until_s, self.at_least_s)}"
