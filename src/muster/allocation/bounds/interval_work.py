@@ -16,7 +16,7 @@ import numpy as np
 
 from muster.allocation.bounds.earliest_times import kth_least
 from muster.allocation.bounds.limits import Limits
-from muster.model.problem import Bools, Floats, Indices
+from muster.model.problem import Floats, Indices
 
 _EFFORT = 3e7  # intervals times tasks, and times groups: beyond, fewer intervals are looked at
 _MOST_TIMES = 150  # at which intervals begin, or end
@@ -101,6 +101,9 @@ class IntervalWork:
     def _latest_alone(self) -> Floats:
         """(n,) when a task begins at the latest, whatever other tasks there are."""
         leaves = -kth_least(-self._leaves_by, self._members)
+        for j in self._rules.for_teams:
+            for count, fits in self._rules.seats(j) if self._rules.has_seats(j) else ():
+                leaves[j] = min(leaves[j], -np.sort(-self._leaves_by[fits, j])[:count].min(initial=math.inf))
         closes = [spans[-1][1] if spans else math.inf for spans in self._rules.openings]
         return np.minimum(closes, np.minimum(self._rules.ends_by, leaves) - self._seconds)
 
@@ -179,7 +182,11 @@ class IntervalWork:
             for first, last in self._rules.spans(i) or [(0.0, math.inf)]
         ]
         kept = [span for span in found if span[0] < span[1]]
-        return np.array([a for a, _, _ in kept]), np.array([b for _, b, _ in kept]), np.array([i for *_, i in kept], int)
+        return (
+            np.array([a for a, _, _ in kept]),
+            np.array([b for _, b, _ in kept]),
+            np.array([i for *_, i in kept], int),
+        )
 
     @cached_property
     def _at_work_most(self) -> Floats:

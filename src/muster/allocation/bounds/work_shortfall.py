@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
@@ -27,7 +28,7 @@ from muster.model.rules.times import moments
 _MOST_KINDS = 6  # of tasks by who can do them, up to which two kinds are looked at together
 _MOST_NAMED = 6  # robots, or tasks
 _MOST_SAID = 3  # shortfalls, those that lack most
-_MOST_GROUPS = 24  # of robots, the largest first, whose intervals are looked at
+_MOST_GROUPS = 24  # of robots whose intervals are looked at
 _MOST_REFUSALS = 2  # of the other robots
 _LARGE = 1e-9
 Forcing = Callable[[Sequence[int]], Sequence[int]]
@@ -149,7 +150,7 @@ def shortfalls(problem: Problem, tasks: Sequence[int], bounds: UsageBounds | Non
     bounds = bounds or UsageBounds(problem)
     if not tasks:
         return ()
-    groups = list(_groups(bounds.possible, tasks))
+    groups = _groups(problem, bounds.possible, tasks)
     found = list[Shortfall]()
     for resource in _resources(problem, bounds.possible, tasks):
         short = [one for group in groups if (one := resource.shortfall(group, tasks)) is not None]
@@ -181,7 +182,7 @@ def _in_intervals(bounds: UsageBounds, groups: Sequence[frozenset[int]], tasks: 
     """The shortfalls of time in intervals."""
     if bounds.limits.is_timed:
         works = IntervalWork(bounds.limits, tasks)
-        for overload in works.overloads([group for group in groups if group][:_MOST_GROUPS]):
+        for overload in works.overloads(groups[:_MOST_GROUPS]):
             yield _in_interval(bounds.problem, overload, bounds.possible, works.forcing)
 
 
@@ -199,7 +200,9 @@ def _in_interval(problem: Problem, found: Overload, usable: Bools, forcing: Forc
         needed=float(found.work.sum()),
         available=float(found.available.sum()),
         unit=_SECONDS,
-        left_out=_fewest((found.work + found.legs)[own].tolist(), lacking) if not after and not named["alternatives"] else 1,
+        left_out=_fewest((found.work + found.legs)[own].tolist(), lacking)
+        if not after and not named["alternatives"]
+        else 1,
         more_robots=math.ceil(lacking / most * (1 - ROUNDING)) if most > 0 else len(own),
         travel=found.travel,
         when=f"between {begins} and {ends}",
@@ -223,11 +226,20 @@ def _named(problem: Problem, group: frozenset[int], tasks: Sequence[int]) -> dic
     }
 
 
-def _groups(possible: Bools, tasks: Sequence[int]) -> Iterator[frozenset[int]]:
-    """Groups of robots: those that can do any task, those of each kind of task, and of two kinds if these are few."""
-    kinds = {frozenset(np.flatnonzero(possible[:, j]).tolist()) for j in tasks}
-    pairs = {a | b for a, b in itertools.combinations(kinds, 2)} if len(kinds) <= _MOST_KINDS else set()
-    yield from sorted({frozenset[int]().union(*kinds), *kinds, *pairs}, key=lambda group: (-len(group), sorted(group)))
+def _groups(problem: Problem, possible: Bools, tasks: Sequence[int]) -> list[frozenset[int]]:
+    """Groups of robots: those that can do any task, of each kind of task or seat, and of two kinds if these are few.
+
+    Kinds are of tasks by the robots that can do them, or may; those of most tasks come first.
+    """
+    kinds = Counter[frozenset[int]]()
+    for j in tasks:
+        seats = problem.model.seats(j) if problem.model.has_seats(j) else ()
+        sorts = [possible[:, j], problem.allowed[:, j], *(fits & possible[:, j] for _, fits in seats)]
+        kinds.update({frozenset(np.flatnonzero(able).tolist()) for able in sorts})
+    ordered = [kind for kind, _ in kinds.most_common()]
+    pairs = [a | b for a, b in itertools.combinations(ordered, 2)] if len(ordered) <= _MOST_KINDS else []
+    everyone = frozenset[int]().union(*(frozenset(np.flatnonzero(possible[:, j]).tolist()) for j in tasks))
+    return [group for group in dict.fromkeys((everyone, *ordered, *pairs)) if group]
 
 
 @dataclass(frozen=True, eq=False)

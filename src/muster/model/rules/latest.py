@@ -30,7 +30,7 @@ class Later(Change):
         return {self.limit_key: self.limit_s, "until_s": self.until_s, "at_least_s": self.at_least_s}
 
     def of_several(self, whose: str, seconds: float) -> str:
-        """The change of several limits of the sort, each by so much, in words; `whose` names robots, or counts tasks."""
+        """The change of several limits of the sort, each by so much, in words; `whose` are robots, or counted tasks."""
         raise NotImplementedError
 
     @property
