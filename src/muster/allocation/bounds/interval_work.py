@@ -103,7 +103,7 @@ class IntervalWork:
         leaves = -kth_least(-self._leaves_by, self._members)
         for j in self._rules.for_teams:
             for count, fits in self._rules.seats(j) if self._rules.has_seats(j) else ():
-                leaves[j] = min(leaves[j], -np.sort(-self._leaves_by[fits, j])[:count].min(initial=math.inf))
+                leaves[j] = min(leaves[j], -np.sort(-self._leaves_by[fits, j])[:count].max(initial=-math.inf))
         closes = [spans[-1][1] if spans else math.inf for spans in self._rules.openings]
         return np.minimum(closes, np.minimum(self._rules.ends_by, leaves) - self._seconds)
 

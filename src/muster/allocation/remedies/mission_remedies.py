@@ -103,14 +103,14 @@ def _added(problem: Problem, tasks: Sequence[int], i: int, due: Callable[[], boo
         more = _with_robots(problem, i, count)
         if not shortfalls(more, tasks):
             name = problem.robots[i].id
-            said = f"{counted(count, 'more robot')} like {name}{_traits(problem.robots[i])}"
+            said = f"{counted(count, 'more robot')} like {name}{_traits(problem, problem.robots[i])}"
             return Changed(remedy=MissionRemedy(said=said, robots=(name,) * count), problem=more)
     return None
 
 
-def _traits(robot: Robot) -> str:
-    """What a robot has by which tasks ask for it, in brackets."""
-    traits = [*filter(None, (robot.type,)), *robot.skills]
+def _traits(problem: Problem, robot: Robot) -> str:
+    """What lets a robot do its tasks, in brackets."""
+    traits = list(filter(None, (rule.trait(robot) for rule in problem.rules)))
     return f" ({listed(traits)})" if traits else ""
 
 

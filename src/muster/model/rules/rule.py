@@ -392,6 +392,10 @@ class Rule:
         """That the route of robot i is over too late that is over at this time at the earliest; None: it is not."""
         return None
 
+    def trait(self, robot: Robot) -> str:
+        """What a robot has by which the rule lets it do tasks, in words; empty: nothing."""
+        return ""
+
     def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
         """A task without what binds it no more once some, by id, are done or begun by so many robots each."""
         return task
