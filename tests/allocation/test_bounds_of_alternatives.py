@@ -4,13 +4,13 @@ from dataclasses import replace
 from random import Random
 
 import pytest
+from tests.allocation.tight_missions import tight_mission
+from tests.judged_plans import JudgedPlans
 
 from muster import Mission, Robot, Rules, Task
 from muster.allocation.bounds import of_objective
 from muster.allocation.bounds.of_objective import best_bound, lower_bound
 from muster.model.problem import Problem
-from tests.allocation.tight_missions import tight_mission
-from tests.judged_plans import JudgedPlans
 
 OBJECTIVES = ("total", "max", "total+max", "average", "makespan", "lateness")
 SEEDS, EACH = 1200, 60
