@@ -115,38 +115,27 @@ class Parts:
     meters: list[Meter] = field(default_factory=list)
     energy: dict[int, tuple[float, float]] = field(default_factory=dict)
     rule: str = ""  # the word of the rule that contributes now; empty: none
-    free: set[int] = field(default_factory=set)  # robots, or tasks, that the rule which contributes now does not bind
     words: dict[str, str] = field(default_factory=dict)  # by primitive, of the first rule that contributed any
 
     def opens(self, j: int, spans: Iterable[tuple[float, float | None]]) -> None:
         """Task j begins in one of these spans."""
-        if j in self.free:
-            return
         own = sorted((opens, math.inf if closes is None else closes) for opens, closes in spans)
         self.openings[j] = _common(self.openings[j], own) if j in self.openings else own
 
     def ends(self, j: int, latest_s: float) -> None:
         """Task j ends by a time."""
-        if j in self.free:
-            return
         self.ends_by[j] = min(latest_s, self.ends_by.get(j, math.inf))
 
     def is_over(self, i: int, latest_s: float) -> None:
         """The route of robot i, its way to the end included, is over by a time."""
-        if i in self.free:
-            return
         self.over_by[i] = min(latest_s, self.over_by.get(i, math.inf))
 
     def lasts(self, i: int, most_s: float) -> None:
         """From leaving its start to the end of its route robot i takes at most so long, however late it leaves."""
-        if i in self.free:
-            return
         self.lasts_most[i] = min(most_s, self.lasts_most.get(i, math.inf))
 
     def rests(self, i: int, spans: Iterable[tuple[float, float | None]]) -> None:
         """Robot i drives and works in these spans alone: each leg and each work within one of them."""
-        if i in self.free:
-            return
         own = sorted((begins, math.inf if ends is None else ends) for begins, ends in spans)
         self.spans[i] = _common(self.spans[i], own) if i in self.spans else own
 

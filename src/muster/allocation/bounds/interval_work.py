@@ -119,7 +119,8 @@ class IntervalWork:
                 for k in rules.units[rules.unit[j]]:
                     latest[k] = min(latest[k], latest[j]) if not rules.exclusive[j] else latest[k]
                 for k, after, within in rules.gaps(j):
-                    latest[j] = min(latest[j], latest[k] + longest[k] + within)
+                    if math.isfinite(within):
+                        latest[j] = min(latest[j], latest[k] + longest[k] + within)
                     if not rules.exclusive[j]:
                         latest[k] = min(latest[k], latest[j] - after - self._seconds[k])
             if np.array_equal(before, latest):

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.allocation.bounds.exclusions import Exclusions
 from muster.allocation.bounds.gap_cycles import gap_cycle
 from muster.model.bottleneck import bottleneck
 from muster.model.plan_model import ROUNDING, PlanModel
@@ -17,7 +17,6 @@ from muster.model.problem import Bools, Floats, Problem
 from muster.model.rules.times import spans
 
 _MOST_ROUNDS = 50  # of narrowing bounds; they hold whenever it ends
-_MOST_NARROWED = 2_000_000  # pairs times robots (or tasks) up to which bounds are narrowed again for each of these
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +38,8 @@ class Limits:
         (n,) seconds until work on a task begins; inf: never.
     awaited
         for each task the prerequisite whose end is the latest of what it waits for; None: a robot is.
-    steps
-        the bounds by which pairs were excluded before, in this order, each with the pairs that were left until then.
+    exclusions
+        what excluded pairs, in these bounds and those before.
     """
 
     problem: Problem
@@ -51,7 +50,7 @@ class Limits:
     ready: Floats
     begin: Floats
     awaited: tuple[int | None, ...]
-    steps: tuple[Limits, ...] = ()
+    exclusions: Exclusions
 
     @property
     def rules(self) -> PlanModel:
@@ -127,63 +126,21 @@ class Limits:
     @cached_property
     def alone(self) -> Bools:
         """(m, n) the pairs that may be in an admissible plan, as far as rules tell that look at one robot."""
-        return self._kept_by(self.problem.allowed, about_one=True)
-
-    def possible(self) -> Bools:
-        """(m, n) the pairs that may be in an admissible plan."""
-        return self._kept_by(self._kept_by(self.usable, about_one=True), about_one=False)
-
-    def _kept_by(self, usable: Bools, *, about_one: bool) -> Bools:
-        for rule in self.problem.rules:
-            possible = rule.possible(self) if rule.about_one == about_one else None
+        usable = self.problem.allowed
+        for possible in self._possible_alone.values():
             usable = usable if possible is None else usable & possible
         return np.asarray(usable)
 
-    def that_excluded(self, i: int, j: int) -> Limits:
-        """These bounds with the times by which a pair was excluded; later ones may hold for the pairs left alone."""
-        return self._at_steps[int(self._survived[i, j])]
-
-    def rule_that_excluded(self, i: int, j: int) -> tuple[str, Limits] | None:
-        """The rule that excluded a pair, with the bounds and the pairs left at that time; None: none, as far as known.
-
-        Rules that look at one robot come first, as they did then.
-        """
-        survived = int(self._survived[i, j]) if self.steps else 0
-        if survived >= len(self.steps) or not self.problem.allowed[i, j]:
-            return None
-        step = self.steps[survived]
-        for rule in sorted(self.problem.rules, key=lambda rule: not rule.about_one):
-            possible = rule.possible(step)
-            if possible is not None and not possible[i, j]:
-                return rule.word, step
-        return None
-
     @cached_property
-    def _at_steps(self) -> tuple[Limits, ...]:
-        steps = (replace(one, usable=self.usable, steps=self.steps[:k]) for k, one in enumerate(self.steps))
-        return (*steps, self)
+    def _possible_alone(self) -> dict[str, Bools | None]:
+        """By word what the rules leave that look at one robot; None: all."""
+        return {rule.word: rule.possible(self) for rule in self.problem.rules if rule.about_one}
 
-    @cached_property
-    def _survived(self) -> npt.NDArray[np.int_]:
-        """(m, n) how many steps left a pair in."""
-        left = [step.usable for step in (*self.steps[1:], self)]
-        return np.asarray(np.sum(left, axis=0), dtype=np.int_)
-
-    def without(self, word: str, at: int) -> Limits | None:
-        """Bounds that hold whatever a rule says of one robot or task: by it other pairs may have been excluded.
-
-        None: to narrow them would take too long.
-        """
-        if not self.steps:
-            return self  # no pair was excluded before
-        if (word, at) not in self._freed and self.usable.size * max(self.usable.shape) <= _MOST_NARROWED:
-            free = replace(self.problem, freed=frozenset({(word, at)}), known=self.problem.measured)
-            self._freed[word, at] = _narrowed(_unnarrowed(free, self.usage, self.way, self.home))
-        return self._freed.get((word, at))
-
-    @cached_property
-    def _freed(self) -> dict[tuple[str, int], Limits]:
-        return {}
+    @property
+    def possible_by_rule(self) -> list[Bools | None]:
+        """For each rule the pairs (m, n) that it leaves; None: all."""
+        alone = self._possible_alone
+        return [alone[rule.word] if rule.about_one else rule.possible(self) for rule in self.problem.rules]
 
     def must_also(self, j: int) -> list[int]:
         """The other tasks that are in every plan with a task: all that come before it or begin with it."""
@@ -220,7 +177,7 @@ def narrowed(
     if not (timed or problem.has_timed_rules):
         none = np.empty((0, 0))
         limits = _unnarrowed(problem, usage, none, none)
-        return replace(limits, usable=limits.possible(), steps=(limits,))
+        return replace(limits, usable=limits.exclusions.narrowed(limits))
     found = [ways(problem, i) for i in range(len(problem.robots))]
     return _narrowed(_unnarrowed(problem, usage, np.array([way for way, _ in found]), np.array([h for _, h in found])))
 
@@ -228,25 +185,25 @@ def narrowed(
 def untimed(problem: Problem) -> Limits:
     """No bounds, for a problem in which nothing is timed; its pairs depend on their usage alone."""
     none, at_once = np.empty((0, 0)), np.zeros(len(problem.tasks))
-    return Limits(problem, none, none.astype(np.bool_), none, none, at_once, at_once, (None,) * len(problem.tasks))
+    awaited, nothing = (None,) * len(problem.tasks), Exclusions(problem)
+    return Limits(problem, none, none.astype(np.bool_), none, none, at_once, at_once, awaited, nothing)
 
 
 def _unnarrowed(problem: Problem, usage: Floats, way: Floats, home: Floats) -> Limits:
     at_once = np.zeros(len(problem.tasks))
-    return Limits(problem, usage, problem.allowed, way, home, at_once, at_once, (None,) * len(problem.tasks))
+    awaited, nothing = (None,) * len(problem.tasks), Exclusions(problem)
+    return Limits(problem, usage, problem.allowed, way, home, at_once, at_once, awaited, nothing)
 
 
 def _narrowed(limits: Limits) -> Limits:
-    steps: list[Limits] = []
     for _ in range(_MOST_ROUNDS):
         next_limits = _with_begins(limits)
-        steps.append(replace(next_limits))  # without what is worked out from it
-        usable = next_limits.possible()
+        usable = limits.exclusions.narrowed(next_limits)
         settled = bool((usable == limits.usable).all()) and bool((next_limits.begin == limits.begin).all())
         limits = replace(next_limits, usable=usable)
         if settled:
             break
-    return replace(limits, steps=tuple(steps))
+    return limits
 
 
 @dataclass(frozen=True)

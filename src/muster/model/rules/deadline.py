@@ -62,7 +62,7 @@ class Deadline(Latest):
         return np.asarray(limits.pair_end <= limits.rules.ends_by * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        return self._by_least_times(outlook.limits, i, j, bound=j, limit="deadline, which is")
+        return self._by_least_times(outlook.limits, i, j, of_robot=False, limit="deadline, which is")
 
     def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
         return self.late(problem, j, 0.0, float(limits.pair_end[i, j]))

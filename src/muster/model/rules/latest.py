@@ -61,12 +61,12 @@ class Latest(Rule):
         """That the limit is before what robot i and task j come to at the least; None: it is not."""
         raise NotImplementedError
 
-    def _by_least_times(self, limits: Limits, i: int, j: int, *, bound: int, limit: str) -> str | None:
-        """The same, by times that hold whatever the rule says of whom it is `bound` to; `limit` is it in words."""
-        problem = limits.problem  # not that of what is free, which has no such limit
+    def _by_least_times(self, limits: Limits, i: int, j: int, *, of_robot: bool, limit: str) -> str | None:
+        """The same, by times that hold whatever the rule says of the robot or of the task; `limit` is it in words."""
+        problem = limits.problem
         if not limits.is_timed or self._excludes(problem, limits, i, j) is None:
             return None
-        free = limits.without(self.word, bound)
+        free = limits.exclusions.before(self.word, robot=i) if of_robot else limits.exclusions.before(self.word, task=j)
         late = None if free is None else self._excludes(problem, free, i, j)
         (until,) = moments(problem, self.latest(problem, i, j))
         return late or f"what it waits for is too late for its {limit} {until}"

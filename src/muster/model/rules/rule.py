@@ -76,6 +76,12 @@ class Question(Protocol):
     def back(self, i: int, end_s: float, j: int) -> float: ...
 
 
+class Exclusions(Protocol):
+    """What excluded pairs; see `muster.allocation.bounds.exclusions`."""
+
+    def before(self, word: str, *, robot: int | None = None, task: int | None = None) -> Limits | None: ...
+
+
 class Limits(Protocol):
     """Lower bounds of usage and times, over all admissible plans; see `muster.allocation.bounds.limits`."""
 
@@ -113,7 +119,8 @@ class Limits(Protocol):
 
     def must_also(self, j: int) -> list[int]: ...
 
-    def without(self, word: str, at: int) -> Limits | None: ...
+    @property
+    def exclusions(self) -> Exclusions: ...
 
 
 @dataclass(frozen=True)

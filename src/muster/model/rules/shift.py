@@ -74,7 +74,7 @@ class Shift(Latest):
         return np.asarray(limits.over <= until * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        return self._by_least_times(outlook.limits, i, j, bound=i, limit="shift, which ends at")
+        return self._by_least_times(outlook.limits, i, j, of_robot=True, limit="shift, which ends at")
 
     def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
         return self.over_late(problem, i, float(limits.over[i, j]))

@@ -62,7 +62,7 @@ class Window(Latest):
         if not limits.is_timed or math.isfinite(limits.pair_begin[i, j]):
             return None
         own = _closed(problem, j, "arrives at", float(limits.arrival[i, j]))
-        waits = self._by_least_times(limits, i, j, bound=j, limit=f"{_which(problem, j)}, which closes at")
+        waits = self._by_least_times(limits, i, j, of_robot=False, limit=f"{_which(problem, j)}, which closes at")
         return own or waits or _never_together(problem, j)
 
     def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
