@@ -43,6 +43,10 @@ class PlanModel:
         """The word of the rule that gives one of these parts, by which reasons name it; empty: none does."""
         return next((self.parts.words[name] for name in primitives if name in self.parts.words), "")
 
+    def given_by(self, primitive: str, *of: int) -> str:
+        """The word of the rule whose bound of a task, a robot, or two tasks holds; empty: there is none."""
+        return self.parts.given.get((primitive, of), "")
+
     @property
     def tasks(self) -> int:
         return self.parts.tasks

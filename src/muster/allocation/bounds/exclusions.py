@@ -69,4 +69,3 @@ class Exclusions:
         at = np.s_[robot, :] if robot is not None else np.s_[:, task]
         steps = self._step[at][(self._rule[at] != _NOT) & of_rule[self._rule[at]]]
         return self._steps[int(steps.min())] if len(steps) else None
-

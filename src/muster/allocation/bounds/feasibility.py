@@ -107,7 +107,7 @@ def _reason(problem: Problem, limits: Limits, i: int, j: int, befores: Sequence[
         rule, then = cause.rule, cause.limits
         found = (rule.never(problem, i, j, Outlook(then, least, before)) for before in befores)
         detail = next((text for text in found if text is not None), None)
-        return Reason(robot, rule.word, detail or "no plan in which it does the task keeps the rule")
+        return Reason(robot, rule.blamed(then, i, j), detail or "no plan in which it does the task keeps the rule")
     for before in befores:
         for rule in problem.rules:
             if (detail := rule.never(problem, i, j, Outlook(limits, least, before))) is not None:

@@ -14,6 +14,7 @@ from muster.allocation.bounds.gap_cycles import gap_cycle
 from muster.model.bottleneck import bottleneck
 from muster.model.plan_model import ROUNDING, PlanModel
 from muster.model.problem import Bools, Floats, Problem
+from muster.model.rules.rule import HeldBack
 from muster.model.rules.times import spans
 
 _MOST_ROUNDS = 50  # of narrowing bounds; they hold whenever it ends
@@ -155,7 +156,7 @@ class Limits:
         return self._needed[j]
 
     @cached_property
-    def held_back(self) -> dict[int, str]:
+    def held_back(self) -> dict[int, HeldBack]:
         """The tasks that no plan does as one before them may end only so long before, each with what is too late."""
         tasks = range(len(self.problem.tasks)) if self.is_timed else ()
         found = {j: _too_far(self, j) or gap_cycle(self, [j, *self.must_also(j)]) or _held_back(self, j) for j in tasks}
@@ -253,25 +254,25 @@ def _sweep(limits: Limits, times: _Times) -> bool:
     return changed
 
 
-def _too_far(limits: Limits, j: int) -> str:
+def _too_far(limits: Limits, j: int) -> HeldBack | None:
     """That a task begins only so long after another, and the robot that must do both takes longer to come to it."""
     for k, _, within in limits.rules.gaps(j):
         way = _way(limits, k, j, limits.problem.allowed) if math.isfinite(within) else 0.0
         if way > within * (1 + ROUNDING) + ROUNDING:
             most, least = spans(within, way)
             before = limits.problem.tasks[k].id
-            return (
-                f"begins at most {most} after {before} ends, and the robot that does both takes {least} to come to it"
-            )
-    return ""
+            robot = f"the robot that does both takes {least} to come to it"
+            word = limits.rules.given_by("gaps", k, j)
+            return HeldBack(f"begins at most {most} after {before} ends, and {robot}", word)
+    return None
 
 
-def _held_back(limits: Limits, j: int) -> str:
+def _held_back(limits: Limits, j: int) -> HeldBack | None:
     """Which task before a task would be too late in every plan that does both, as it may not end too long before."""
     tasks = [j, *limits.must_also(j)]
     gaps = [(k, b, within) for k in tasks for b, _, within in limits.rules.gaps(k) if math.isfinite(within)]
     if not gaps:
-        return ""
+        return None
     times = _Times(limits.ready.copy(), limits.begin.copy(), list(limits.awaited))
     for _ in range(len(tasks) + 1):
         waiting = [
@@ -281,7 +282,8 @@ def _held_back(limits: Limits, j: int) -> str:
         ]
         if not any(waiting) and not _sweep(limits, times):
             break
-    return next((late for k in tasks if k != j and (late := _late(limits, times, k))), "")
+    late = next((late for k in tasks if k != j and (late := _late(limits, times, k))), "")
+    return HeldBack(late, limits.rules.given_by("gaps", gaps[0][1], gaps[0][0])) if late else None
 
 
 def _late(limits: Limits, times: _Times, k: int) -> str:

@@ -76,6 +76,14 @@ class Question(Protocol):
     def back(self, i: int, end_s: float, j: int) -> float: ...
 
 
+@dataclass(frozen=True)
+class HeldBack:
+    """That no plan does a task, by how long it may be between tasks: in words, and the rule that gave the bound."""
+
+    said: str
+    word: str
+
+
 class Exclusions(Protocol):
     """What excluded pairs; see `muster.allocation.bounds.exclusions`."""
 
@@ -115,7 +123,7 @@ class Limits(Protocol):
     @property
     def over(self) -> Floats: ...
     @property
-    def held_back(self) -> dict[int, str]: ...
+    def held_back(self) -> dict[int, HeldBack]: ...
 
     def must_also(self, j: int) -> list[int]: ...
 
@@ -361,6 +369,10 @@ class Rule:
     def possible(self, limits: Limits) -> Bools | None:
         """(m, n) the pairs that may be in an admissible plan, by lower bounds of usage and times; None: all."""
         return None
+
+    def blamed(self, limits: Limits, i: int, j: int) -> str:
+        """The word of the rule by which it excludes a pair: of the one that gave the bound."""
+        return self.word
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         """Why robot i can do task j in no admissible plan; None if it may."""
