@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from muster.allocation.bounds.limits import Limits
 
 _NOT = -1
+_MOST_ASKED = 50_000  # pairs, up to which it is said why others cannot do tasks
 Numbers = npt.NDArray[np.int32]
 
 
@@ -69,3 +71,23 @@ class Exclusions:
         at = np.s_[robot, :] if robot is not None else np.s_[:, task]
         steps = self._step[at][(self._rule[at] != _NOT) & of_rule[self._rule[at]]]
         return self._steps[int(steps.min())] if len(steps) else None
+
+
+def why_no_others(limits: Limits, group: Collection[int], tasks: Sequence[int]) -> tuple[str, ...]:
+    """Why no robot outside a group does any of some tasks, each reason once; empty: one may, or pairs are too many.
+
+    Of what refuses a pair the rule and its words, of what excluded one, for which times differ, the rule alone.
+    """
+    problem, found = limits.problem, dict[str, None]()
+    outside = [i for i in range(len(problem.robots)) if i not in group]
+    if len(outside) * len(tasks) > _MOST_ASKED:
+        return ()
+    for i in outside:
+        for j in tasks:
+            if (refused := problem.refusal(i, j)) is not None:
+                found[", ".join(refused)] = None
+            elif (cause := limits.exclusions.cause(i, j)) is not None:
+                found[cause.rule.blamed(cause.limits, i, j)] = None
+            else:
+                return ()
+    return tuple(found)

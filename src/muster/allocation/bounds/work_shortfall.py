@@ -17,7 +17,9 @@ from typing import Any
 
 import numpy as np
 
+from muster.allocation.bounds.exclusions import why_no_others
 from muster.allocation.bounds.interval_work import IntervalWork, Overload
+from muster.allocation.bounds.limits import Limits
 from muster.allocation.bounds.usage_bounds import UsageBounds
 from muster.mission.texts.counting import counted
 from muster.model.problem import Bools, Floats, Problem
@@ -152,7 +154,7 @@ def shortfalls(problem: Problem, tasks: Sequence[int], bounds: UsageBounds | Non
         return ()
     groups = _groups(problem, bounds.possible, tasks)
     found = list[Shortfall]()
-    for resource in _resources(problem, bounds.possible, tasks):
+    for resource in _resources(bounds.limits, tasks):
         short = [one for group in groups if (one := resource.shortfall(group, tasks)) is not None]
         found += _apart(short)
     in_intervals = list(_in_intervals(bounds, groups, tasks))
@@ -183,46 +185,44 @@ def _in_intervals(bounds: UsageBounds, groups: Sequence[frozenset[int]], tasks: 
     if bounds.limits.is_timed:
         works = IntervalWork(bounds.limits, tasks)
         for overload in works.overloads(groups[:_MOST_GROUPS]):
-            yield _in_interval(bounds.problem, overload, bounds.possible, works.forcing)
+            yield _in_interval(bounds.limits, overload, works.forcing)
 
 
-def _in_interval(problem: Problem, found: Overload, usable: Bools, forcing: Forcing) -> Shortfall:
+def _in_interval(limits: Limits, found: Overload, forcing: Forcing) -> Shortfall:
+    problem = limits.problem
     own, lacking = np.flatnonzero((found.work > 0) | (found.legs > 0)).tolist(), found.lacking
     begins, ends = moments(problem, found.begins, found.ends)
     after = forcing(own)  # one of these left out gives others time
     most = float(found.available.max()) + float(found.legs.max(initial=0.0))
     outside = np.ones(len(problem.robots), np.bool_)
     outside[list(found.group)] = False
-    named = _named(problem, found.group, own)
+    named = _named(limits, found.group, own)
     return Shortfall(
         resource=_OF_TASKS,
         **named,
         needed=float(found.work.sum()),
         available=float(found.available.sum()),
         unit=_SECONDS,
-        left_out=_fewest((found.work + found.legs)[own].tolist(), lacking)
-        if not after and not named["alternatives"]
-        else 1,
+        left_out=1 if after or named["alternatives"] else _fewest((found.work + found.legs)[own].tolist(), lacking),
         more_robots=math.ceil(lacking / most * (1 - ROUNDING)) if most > 0 else len(own),
         travel=found.travel,
         when=f"between {begins} and {ends}",
-        shared=bool(usable[outside][:, own].any()),
+        shared=bool(limits.usable[outside][:, own].any()),
         after=tuple(task.id for task in problem.mission.tasks if problem.task_index[task.id] in after),
     )
 
 
-def _named(problem: Problem, group: frozenset[int], tasks: Sequence[int]) -> dict[str, Any]:
+def _named(limits: Limits, group: frozenset[int], tasks: Sequence[int]) -> dict[str, Any]:
     """Who is short, and with which tasks: of those that exclude each other all."""
+    problem = limits.problem
     whole = set(tasks).union(*(alike for alike in problem.model.alternatives if not set(alike).isdisjoint(tasks)))
-    outside = [i for i in range(len(problem.robots)) if i not in group]
-    refused = dict.fromkeys(problem.refusal(i, j) for i in outside for j in tasks)
-    said = tuple(f"{word}, {detail}" for word, detail in filter(None, refused))
+    said = why_no_others(limits, group, tasks)
     return {
         "robots": tuple(robot.id for robot in problem.mission.robots if problem.robot_index[robot.id] in group),
         "tasks": tuple(task.id for task in problem.mission.tasks if problem.task_index[task.id] in whole),
-        "everyone": not outside,
+        "everyone": len(group) == len(problem.robots),
         "alternatives": len(whole) - len(tasks),
-        "refusals": said if len(said) <= _MOST_REFUSALS and None not in refused else (),
+        "refusals": said if len(said) <= _MOST_REFUSALS else (),
     }
 
 
@@ -248,17 +248,16 @@ class _Resource:
 
     name: str
     unit: str
-    problem: Problem
-    possible: Bools
+    limits: Limits
     work: Floats
     has: Floats
     by_tasks: Bools | None = None  # (m,) whether its tasks, and not its route, say how much time a robot has
 
     def shortfall(self, group: frozenset[int], tasks: Sequence[int]) -> Shortfall | None:
-        problem, robots = self.problem, sorted(group)
+        problem, robots = self.limits.problem, sorted(group)
         outside = np.ones(len(problem.robots), dtype=np.bool_)
         outside[robots] = False
-        own = [j for j in tasks if not self.possible[outside, j].any()]
+        own = [j for j in tasks if not self.limits.usable[outside, j].any()]
         available = float(self.has[robots].sum())
         if not own or not robots or not math.isfinite(available):
             return None
@@ -270,7 +269,7 @@ class _Resource:
         lacking = needed - available
         return Shortfall(
             resource=_OF_TASKS if self.by_tasks is not None and self.by_tasks[robots].any() else self.name,
-            **_named(problem, group, list(works)),
+            **_named(self.limits, group, list(works)),
             needed=needed,
             available=available,
             unit=self.unit,
@@ -280,11 +279,12 @@ class _Resource:
 
     def _least(self, j: int) -> float:
         """The least work of a task, all members together: each works as long as the slowest, or pays its own cost."""
-        count = self.problem.model.least_members(j)
-        least = np.sort(self.work[self.possible[:, j], j])[:count]
+        problem = self.limits.problem
+        count = problem.model.least_members(j)
+        least = np.sort(self.work[self.limits.usable[:, j], j])[:count]
         if len(least) < count:
             return 0.0
-        as_long = self.unit == _SECONDS or self.problem.in_time
+        as_long = self.unit == _SECONDS or problem.in_time
         return float(least[-1] * count if as_long else least.sum())
 
 
@@ -302,7 +302,8 @@ _SECONDS = "robot-seconds"
 _OF_TASKS = "time"
 
 
-def _resources(problem: Problem, possible: Bools, tasks: Sequence[int]) -> Iterator[_Resource]:
+def _resources(limits: Limits, tasks: Sequence[int]) -> Iterator[_Resource]:
+    problem, possible = limits.problem, limits.usable
     robots = range(len(problem.robots))
     seconds = np.array([problem.work_seconds(i) for i in robots])
     rules, start = problem.model, np.array([robot.available_from_s for robot in problem.robots])
@@ -310,14 +311,14 @@ def _resources(problem: Problem, possible: Bools, tasks: Sequence[int]) -> Itera
     longest = seconds.max(axis=0, initial=0.0)  # a team takes as long as its slowest member
     last = np.array([_last_end(problem, [j for j in tasks if possible[i, j]], longest) for i in robots])
     has = np.maximum(0.0, np.minimum(until, last) - start)
-    yield _Resource(rules.word_of("over_by") or _OF_TASKS, _SECONDS, problem, possible, seconds, has, last < until)
+    yield _Resource(rules.word_of("over_by") or _OF_TASKS, _SECONDS, limits, seconds, has, last < until)
     usage = seconds if problem.in_time else np.array([problem.work_usage(i) for i in robots])
     unit = _SECONDS if problem.in_time else problem.usage_unit
     if word := rules.word_of("capacity"):
-        yield _Resource(word, unit, problem, possible, usage, problem.capacity)
+        yield _Resource(word, unit, limits, usage, problem.capacity)
     if (word := rules.word_of("energy")) and not rules.refills:
         has = np.minimum(rules.energy_at_start, problem.capacity)
-        yield _Resource(word, unit, problem, possible, usage, has)
+        yield _Resource(word, unit, limits, usage, has)
 
 
 def _last_end(problem: Problem, tasks: Sequence[int], longest: Floats) -> float:
