@@ -21,6 +21,7 @@ from muster.model.problem import Floats, Indices
 _EFFORT = 3e7  # intervals times tasks, and times groups: beyond, fewer intervals are looked at
 _MOST_TIMES = 150  # at which intervals begin, or end
 _MOST_LEGS = 2e7  # robots times tasks squared, up to which legs between tasks are looked at
+_MOST_ROUNDS = 50  # of latest begins; they hold whenever it ends
 _CLEAR = 1e-6  # by how much work must be above the time for it, relative and in seconds
 Group = frozenset[int]
 
@@ -113,9 +114,9 @@ class IntervalWork:
         latest, rules = self._latest_alone.copy(), self._rules
         longest = np.maximum(self._limits.longest_work, self._limits.shortest_work)
         tasks = np.flatnonzero(self._chosen).tolist()
-        for _ in range(len(tasks)):
+        for _ in range(min(len(tasks), _MOST_ROUNDS)):
             before = latest.copy()
-            for j in tasks:
+            for j in reversed(tasks):
                 for k in rules.units[rules.unit[j]]:
                     latest[k] = min(latest[k], latest[j]) if not rules.exclusive[j] else latest[k]
                 for k, after, within in rules.gaps(j):
