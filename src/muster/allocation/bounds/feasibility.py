@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import heapq
+import itertools
 import math
 from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 import numpy as np
 
+from muster.allocation.bounds.exclusions import Cause
 from muster.allocation.bounds.limits import Limits, narrowed, untimed
 from muster.mission.plan import Reason, Unassigned
 from muster.model.plan_model import ROUNDING
@@ -104,15 +106,26 @@ def _reason(problem: Problem, limits: Limits, i: int, j: int, befores: Sequence[
         return Reason(robot, *refused)
     least = float(limits.usage[i, j] if limits.is_timed else _least_usage_with(problem, i, [j])[0])
     if (cause := limits.exclusions.cause(i, j)) is not None:
-        rule, then = cause.rule, cause.limits
-        found = (rule.never(problem, i, j, Outlook(then, least, before)) for before in befores)
-        detail = next((text for text in found if text is not None), None)
-        return Reason(robot, rule.blamed(then, i, j), detail or "no plan in which it does the task keeps the rule")
-    for before in befores:
-        for rule in problem.rules:
-            if (detail := rule.never(problem, i, j, Outlook(limits, least, before))) is not None:
-                return Reason(robot, rule.word, detail)
+        return _excluded(problem, cause, i, j, least, befores)
+    for before, rule in itertools.product(befores, problem.rules):
+        if (detail := rule.never(problem, i, j, Outlook(limits, least, before))) is not None:
+            return Reason(robot, rule.word, detail)
     return Reason(robot, "not-chosen", "no plan does the task, whoever might")
+
+
+def _excluded(problem: Problem, cause: Cause, i: int, j: int, least: float, befores: Sequence[str]) -> Reason:
+    """What excluded a pair, as the rule says it that did.
+
+    Of a rule that looks at teams it may be no more than that what comes before the task is lost: that is said first.
+    """
+    robot, rule = problem.robots[i].id, cause.rule
+    lost = [] if rule.about_one else list(filter(None, befores))
+    for before, other in itertools.product(lost, problem.rules):
+        if other.about_one and (detail := other.never(problem, i, j, Outlook(cause.limits, least, before))) is not None:
+            return Reason(robot, other.word, detail)
+    found = (rule.never(problem, i, j, Outlook(cause.limits, least, before)) for before in befores)
+    detail = next((text for text in found if text is not None), "no plan in which it does the task keeps the rule")
+    return Reason(robot, rule.blamed(cause.limits, i, j), detail)
 
 
 def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:
