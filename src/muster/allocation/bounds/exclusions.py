@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from muster.model.problem import Bools, Problem
 from muster.model.rules import Rule
-
-if TYPE_CHECKING:
-    from muster.allocation.bounds.limits import Limits
+from muster.model.rules.rule import Limits
 
 _NOT = -1
-_MOST_ASKED = 50_000  # pairs, up to which it is said why others cannot do tasks
 Numbers = npt.NDArray[np.int32]
+
+
+class Narrowing(Limits, Protocol):
+    """Bounds, and what rules leave of their pairs."""
+
+    @property
+    def possible_by_rule(self) -> list[Bools | None]: ...
+
+    def bare(self) -> Limits: ...
 
 
 @dataclass(frozen=True)
@@ -46,7 +51,7 @@ class Exclusions:
         self._rule: Numbers = np.full(shape, _NOT, np.int32)
         self._step: Numbers = np.full(shape, _NOT, np.int32)
 
-    def narrowed(self, limits: Limits) -> Bools:
+    def narrowed(self, limits: Narrowing) -> Bools:
         """(m, n) the pairs that some bounds leave of those before; of the others the first rule is remembered."""
         usable = limits.usable.copy()
         for number, possible in enumerate(limits.possible_by_rule):
@@ -54,7 +59,7 @@ class Exclusions:
                 self._rule[usable & ~possible] = number
                 usable &= possible
         self._step[limits.usable & ~usable] = len(self._steps)
-        self._steps.append(replace(limits))  # without what is worked out from it
+        self._steps.append(limits.bare())
         return usable
 
     def cause(self, i: int, j: int) -> Cause | None:
@@ -71,23 +76,3 @@ class Exclusions:
         at = np.s_[robot, :] if robot is not None else np.s_[:, task]
         steps = self._step[at][(self._rule[at] != _NOT) & of_rule[self._rule[at]]]
         return self._steps[int(steps.min())] if len(steps) else None
-
-
-def why_no_others(limits: Limits, group: Collection[int], tasks: Sequence[int]) -> tuple[str, ...]:
-    """Why no robot outside a group does any of some tasks, each reason once; empty: one may, or pairs are too many.
-
-    Of what refuses a pair the rule and its words, of what excluded one, for which times differ, the rule alone.
-    """
-    problem, found = limits.problem, dict[str, None]()
-    outside = [i for i in range(len(problem.robots)) if i not in group]
-    if len(outside) * len(tasks) > _MOST_ASKED:
-        return ()
-    for i in outside:
-        for j in tasks:
-            if (refused := problem.refusal(i, j)) is not None:
-                found[", ".join(refused)] = None
-            elif (cause := limits.exclusions.cause(i, j)) is not None:
-                found[cause.rule.blamed(cause.limits, i, j)] = None
-            else:
-                return ()
-    return tuple(found)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -17,6 +18,7 @@ from muster.model.problem import Bools, Floats, Problem
 from muster.model.rules.rule import HeldBack
 from muster.model.rules.times import spans
 
+_MOST_ASKED = 50_000  # pairs, up to which it is said why others cannot do tasks
 _MOST_ROUNDS = 50  # of narrowing bounds; they hold whenever it ends
 
 
@@ -142,6 +144,27 @@ class Limits:
         """For each rule the pairs (m, n) that it leaves; None: all."""
         alone = self._possible_alone
         return [alone[rule.word] if rule.about_one else rule.possible(self) for rule in self.problem.rules]
+
+    def bare(self) -> Limits:
+        """The same without what is worked out from it."""
+        return replace(self)
+
+    def why_no_others(self, group: Collection[int], tasks: Sequence[int]) -> tuple[str, ...]:
+        """Why no robot outside a group does any of some tasks, each reason once; empty: one may, or pairs are too many.
+
+        Of what refuses a pair the rule and its words, of what excluded one, for which times differ, the rule alone.
+        """
+        problem, found = self.problem, dict[str, None]()
+        outside = [i for i in range(len(problem.robots)) if i not in group]
+        pairs = itertools.product(outside, tasks) if len(outside) * len(tasks) <= _MOST_ASKED else ()
+        for i, j in pairs:
+            if (refused := problem.refusal(i, j)) is not None:
+                found[", ".join(refused)] = None
+            elif (cause := self.exclusions.cause(i, j)) is not None:
+                found[cause.rule.blamed(cause.limits, i, j)] = None
+            else:
+                return ()
+        return tuple(found)
 
     def must_also(self, j: int) -> list[int]:
         """The other tasks that are in every plan with a task: all that come before it or begin with it."""

@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 
-from muster.allocation.bounds.exclusions import why_no_others
 from muster.allocation.bounds.interval_work import IntervalWork, Overload
 from muster.allocation.bounds.limits import Limits
 from muster.allocation.bounds.usage_bounds import UsageBounds
@@ -216,7 +215,7 @@ def _named(limits: Limits, group: frozenset[int], tasks: Sequence[int]) -> dict[
     """Who is short, and with which tasks: of those that exclude each other all."""
     problem = limits.problem
     whole = set(tasks).union(*(alike for alike in problem.model.alternatives if not set(alike).isdisjoint(tasks)))
-    said = why_no_others(limits, group, tasks)
+    said = limits.why_no_others(group, tasks)
     return {
         "robots": tuple(robot.id for robot in problem.mission.robots if problem.robot_index[robot.id] in group),
         "tasks": tuple(task.id for task in problem.mission.tasks if problem.task_index[task.id] in whole),

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from muster.allocation.bounds.exclusions import why_no_others
 from muster.allocation.bounds.limits import Limits, late_task
 from muster.allocation.bounds.subset_times import sizes_that_differ, tied_pairs, ways_of
 from muster.allocation.bounds.usage_bounds import FEW, UsageBounds
@@ -35,7 +34,7 @@ def conflict_text(bounds: UsageBounds, robots: list[int], tasks: list[int]) -> s
         or _too_late_for_one(bounds, robots, tasks)
         or _however(bounds, robots, tasks, names)
     )
-    others = why_no_others(bounds.limits, robots, tasks)
+    others = bounds.limits.why_no_others(robots, tasks)
     return f"{said} (others: {'; '.join(others)})" if 0 < len(others) <= _MOST_REASONS else said
 
 
