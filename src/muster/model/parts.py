@@ -142,11 +142,8 @@ class Parts:
     meters: list[Meter] = field(default_factory=list)
     energy: dict[int, tuple[float, float]] = field(default_factory=dict)
     rule: str = ""  # the word of the rule that contributes now; empty: none
-    free: set[int] = field(default_factory=set)  # robots, or tasks, that the rule which contributes now does not bind
+    given: dict[tuple[str, tuple[int, ...]], str] = field(default_factory=dict)  # the rule of each bound that holds
     words: dict[str, str] = field(default_factory=dict)  # by primitive, of the first rule that contributed any
-    givers: dict[tuple[str, object], str] = field(
-        default_factory=dict
-    )  # by primitive and number the rule that limits it
 
     def opens(self, j: int, spans: Iterable[tuple[float, float | None]]) -> None:
         """Task j begins in one of these spans."""
@@ -181,9 +178,9 @@ class Parts:
         if least_s > 0 or most_s < math.inf:
             self.bounded.add((before, j))
         least, most = self.gaps.setdefault(j, {}).get(before, (0.0, math.inf))
-        self.gaps[j][before] = max(least, least_s), min(most, most_s)
         if most_s < most:
-            self.givers["gaps", (j, before)] = self.rule
+            self._give("gaps", before, j)
+        self.gaps[j][before] = max(least, least_s), min(most, most_s)
 
     def begin_together(self, j: int, k: int) -> None:
         """Both tasks are done by different robots, beginning at one moment, or neither is."""
@@ -236,19 +233,20 @@ class Parts:
     def _at_most(self, limits: str, at: int, most: float) -> None:
         """What rules say of a robot or task together is the least of it."""
         known: dict[int, float] = getattr(self, limits)
-        if at not in self.free and (at not in known or most < known[at]):
+        if at not in known or most < known[at]:
             known[at] = most
-            self.givers[limits, at] = self.rule
+            self._give(limits, at)
 
     def _within(self, openings: str, at: int, own: Openings) -> None:
         """What rules say of a robot or task together is what is in the spans of each."""
-        if at in self.free:
-            return
         known: dict[int, Openings] = getattr(self, openings)
         both = _common(known[at], own) if at in known else own
         if at not in known or both[-1] != known[at][-1]:
-            self.givers[openings, at] = self.rule
+            self._give(openings, at)
         known[at] = both
+
+    def _give(self, primitive: str, *of: int) -> None:
+        self.given[primitive, of] = self.rule
 
     def named(self, word: str) -> None:
         """Remember the word of the rule that has contributed, for the primitives of which there were none before."""

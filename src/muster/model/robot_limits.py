@@ -47,7 +47,7 @@ class RobotLimits:
             float(model.lasts_most[0]),
             model.spans(0),
             frozenset(station.id for k, station in enumerate(stations) if not model.may_call(0, k)),
-            {limit: model.giver(limit, 0) for limit in _TIMES},
+            {limit: model.given_by(limit, 0) for limit in _TIMES},
         )
 
     def set_out(self, now_s: float, seconds: float) -> float:

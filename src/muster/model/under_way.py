@@ -155,7 +155,7 @@ class UnderWay:
         most_s = self.before(after)[task][1]
         if takes_s <= most_s + TIME_ROUNDING_S:
             return ""
-        word = self._model.giver("gaps", (self._index[after], self._index[task]))
+        word = self._model.given_by("gaps", self._index[task], self._index[after])
         way = f"the way on board from the end of {task} to the begin of {after}"
         return f"{word}: {way} takes at least {takes_s:,.1f} s; expected at most {most_s:,g} s"
 
@@ -191,7 +191,7 @@ class UnderWay:
         return name in begun or (pickup >= 0 and self._names[pickup] in begun and name not in over)
 
     def _giver(self, limit: str, task: str) -> str:
-        return self._model.giver(limit, self._index[task])
+        return self._model.given_by(limit, self._index[task])
 
     def openings(self, task: str) -> Openings:
         """When a task may begin; empty: at any time."""
@@ -262,8 +262,8 @@ class UnderWay:
                 yield self._missed("gaps", task, words, before)
 
     def _missed(self, limit: str, task: str, words: str, before: str | None = None) -> Missed:
-        at: object = self._index[task] if before is None else (self._index[task], self._index[before])
-        return Missed(limit, f"{self._model.giver(limit, at)}: {words}")
+        at = [self._index[name] for name in (before, task) if name is not None]
+        return Missed(limit, f"{self._model.given_by(limit, *at)}: {words}")
 
     def missed_opening(self, task: str, meant_s: float, now: float) -> Missed | None:
         """That the opening in which a task was meant to begin is over, and another one is to come; None: it is not."""

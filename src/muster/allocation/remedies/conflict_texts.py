@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from operator import methodcaller
 
 import numpy as np
 
@@ -13,8 +12,10 @@ from muster.allocation.bounds.subset_times import sizes_that_differ, tied_pairs,
 from muster.allocation.bounds.usage_bounds import FEW, UsageBounds
 from muster.mission.model import Robot, Task
 from muster.mission.texts.counting import counted
-from muster.model.rules.rule import ROUNDING, said
+from muster.model.rules.rule import ROUNDING
 from muster.model.rules.times import moments
+
+_MOST_REASONS = 2  # why others cannot do the tasks
 
 
 def in_mission_order(items: Sequence[Robot] | Sequence[Task], names: Sequence[str]) -> tuple[str, ...]:
@@ -27,12 +28,14 @@ def conflict_text(bounds: UsageBounds, robots: list[int], tasks: list[int]) -> s
     """Why robots, all that can do any of the tasks, cannot do them all."""
     problem = bounds.problem
     names = ", ".join(in_mission_order(problem.mission.robots, [problem.robots[i].id for i in robots]))
-    return (
+    said = (
         _too_much_together(bounds, robots, tasks, names)
         or _tied(bounds, tasks)
         or _too_late_for_one(bounds, robots, tasks)
         or _however(bounds, robots, tasks, names)
     )
+    others = bounds.limits.why_no_others(robots, tasks)
+    return f"{said} (others: {'; '.join(others)})" if 0 < len(others) <= _MOST_REASONS else said
 
 
 def _too_much_together(bounds: UsageBounds, robots: list[int], tasks: list[int], names: str) -> str:
@@ -90,8 +93,7 @@ def _after(limits: Limits, i: int, a: int, b: int) -> str:
     if late := late_task(problem, b, ready, end):
         return f"with {first} first, {then} {late}"
     over = float(rules.busy_until(i, np.array(end), limits.home[i, b]))
-    lines = said(problem.rules, problem, i, b, methodcaller("over_late", problem, i, over))
-    back = next((text for _, text in lines), "")
+    back = next((text for rule in problem.rules if (text := rule.over_late(problem, i, over))), "")
     return f"with {first} first and then {then}, {back}" if back else ""
 
 

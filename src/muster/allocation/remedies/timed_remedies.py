@@ -56,7 +56,7 @@ def _wider(problem: Problem, first: Remedy, rest: Routes, i: int, j: int) -> Ite
     done = {k for route in rest for k in route}
     for rule in sorted(base.rules, key=lambda rule: not rule.about_one):
         change = rule.lifted(base, i, j, done)
-        if change is not None and rule.named(base, i, j) == rule.word:
+        if change is not None:
             yield replace(first, changes={**first.changes, rule.word: change})
 
 
@@ -67,8 +67,7 @@ def _lifted_and_tried(
     problem: Problem, rest: Routes, i: int, j: int, remedy: Remedy, judge: Judge, *, searched: bool
 ) -> Remedy | None:
     """The remedy with the times and the capacity that it needs; None: no plan was found."""
-    own = (rule for rule in problem.rules if rule.named(problem, i, j) == rule.word)
-    unlimited = {rule.word: rule.unlimited(problem, i, j) for rule in own}
+    unlimited = {rule.word: rule.unlimited(problem, i, j) for rule in problem.rules}
     limits = {word: change for word, change in unlimited.items() if change is not None}
     lifted = replace(remedy, changes={**remedy.changes, **limits})
     opened = changed(problem, lifted, i, j)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -24,10 +24,6 @@ Scores = Mapping[str, Mapping[str, float]]
 
 ROUNDING = 2e-9
 """By how much a usage may be above a capacity, relative; a little more than the judge allows."""
-
-
-OF_ROBOTS = ("over_by", "lasts_most", "spans")
-"""The limits of times of robots; the others are of tasks."""
 
 
 class Question(Protocol):
@@ -80,6 +76,20 @@ class Question(Protocol):
     def back(self, i: int, end_s: float, j: int) -> float: ...
 
 
+@dataclass(frozen=True)
+class HeldBack:
+    """That no plan does a task, by how long it may be between tasks: in words, and the rule that gave the bound."""
+
+    said: str
+    word: str
+
+
+class Exclusions(Protocol):
+    """What excluded pairs; see `muster.allocation.bounds.exclusions`."""
+
+    def before(self, word: str, *, robot: int | None = None, task: int | None = None) -> Limits | None: ...
+
+
 class Limits(Protocol):
     """Lower bounds of usage and times, over all admissible plans; see `muster.allocation.bounds.limits`."""
 
@@ -113,11 +123,12 @@ class Limits(Protocol):
     @property
     def over(self) -> Floats: ...
     @property
-    def held_back(self) -> dict[int, str]: ...
+    def held_back(self) -> dict[int, HeldBack]: ...
 
     def must_also(self, j: int) -> list[int]: ...
 
-    def without(self, word: str, at: int) -> Limits | None: ...
+    @property
+    def exclusions(self) -> Exclusions: ...
 
 
 @dataclass(frozen=True)
@@ -319,8 +330,6 @@ class Rule:
         whether calls at stations may keep a route from breaking it.
     resource
         what work takes that robots have only so much of by it: the word of a shortfall, and what it is; None: nothing.
-    speaks_of
-        the limit of times, a field of `Parts`, of which it speaks whichever rule gave it; empty: it speaks of itself.
     key, no_change
         of its change in the plain data of a remedy, and what stands there where no change is needed; no key: a robot
         is not changed for it, or not by it alone.
@@ -336,7 +345,6 @@ class Rule:
     of_the_team: ClassVar[bool] = False
     kept_by_calls: ClassVar[bool] = False
     resource: ClassVar[tuple[str, str] | None] = None
-    speaks_of: ClassVar[str] = ""
     key: ClassVar[str | None] = None
     no_change: ClassVar[Any] = None
 
@@ -346,16 +354,6 @@ class Rule:
         A rule is asked for what it gave first. Where nothing is said it is a robot or task with a key that it declares.
         """
         return {}
-
-    def named(self, problem: Question, i: int, j: int) -> str:
-        """The word of the rule that gave robot i, or task j, the limit of which it speaks."""
-        at = i if self.speaks_of in OF_ROBOTS else j
-        return (self.speaks_of and problem.model.giver(self.speaks_of, at)) or self.word
-
-    def called(self, problem: Question, i: int, j: int, noun: str) -> str:
-        """What people call that limit: by a noun of its own, or by the word of the rule that gave it."""
-        word = self.named(problem, i, j)
-        return noun if word == self.word else word
 
     def compile(self, problem: Question, parts: Parts) -> None:
         """Contribute the primitives that it comes to."""
@@ -371,6 +369,10 @@ class Rule:
     def possible(self, limits: Limits) -> Bools | None:
         """(m, n) the pairs that may be in an admissible plan, by lower bounds of usage and times; None: all."""
         return None
+
+    def blamed(self, limits: Limits, i: int, j: int) -> str:
+        """The word of the rule by which it excludes a pair: of the one that gave the bound."""
+        return self.word
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         """Why robot i can do task j in no admissible plan; None if it may."""
@@ -409,6 +411,10 @@ class Rule:
         """That the route of robot i is over too late that is over at this time at the earliest; None: it is not."""
         return None
 
+    def trait(self, robot: Robot) -> str:
+        """What a robot has by which the rule lets it do tasks, in words; empty: nothing."""
+        return ""
+
     def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
         """A task without what binds it no more once some, by id, are done or begun by so many robots each."""
         return task
@@ -435,17 +441,6 @@ class Rule:
     def change(self, problem: Question, robot: Robot, task: Task) -> Change | None:
         """The least change with which the rule does not refuse the pair; None if none is needed."""
         return None
-
-
-def said(
-    rules: Sequence[Rule], problem: Question, i: int, j: int, says: Callable[[Rule], str | None]
-) -> Iterator[tuple[str, str]]:
-    """What rules say of robot i and task j, with their words: of a limit in the words of the rule that gave it."""
-    for rule in rules:
-        if text := says(rule):
-            word = rule.named(problem, i, j)
-            giver = next((one for one in rules if one.word == word), rule)
-            yield word, says(giver) or text
 
 
 def above_room(problem: Question, meters: Sequence[Meter], routes: Routes) -> tuple[float, str]:

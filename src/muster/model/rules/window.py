@@ -27,6 +27,9 @@ class LongerWindow(Later):
     def short(self) -> str:
         return f"a window {longer(self.seconds)} longer"
 
+    def of_several(self, whose: str, seconds: float) -> str:
+        return f"windows of {whose} {longer(seconds)} longer"
+
     @property
     def line(self) -> str:
         return f"{self.short}, until {span(self.until_s or 0.0)}: {known_least(self.until_s, self.at_least_s)}"
@@ -39,9 +42,9 @@ class Window(Latest):
     """The begin of the work is in one of `window_s`. A robot that is too early waits for the next one."""
 
     word: ClassVar[str] = "window"
-    speaks_of = "openings"
     asked: ClassVar[Mapping[str, str]] = {"openings": "window"}
     key = "window"
+    limits = ("openings", False)
     lifts = LongerWindow
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
@@ -59,37 +62,24 @@ class Window(Latest):
         limits = outlook.limits
         if not limits.is_timed or math.isfinite(limits.pair_begin[i, j]):
             return None
-        own = self._closed(problem, j, "arrives at", float(limits.arrival[i, j]))
-        waits = self._by_least_times(limits, i, j, f"{self._which(problem, j)}, which closes at")
+        own = _closed(problem, j, "arrives at", float(limits.arrival[i, j]))
+        waits = self._by_least_times(limits, i, j, limit=f"{_which(problem, j)}, which closes at")
         return own or waits or _never_together(problem, j)
 
     def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
-        return self._closed(problem, j, *reaches(limits, i, j))
+        return _closed(problem, j, *reaches(limits, i, j))
 
     def latest(self, problem: Question, i: int, j: int) -> float:
         windows = problem.model.openings[j]
         return windows[-1][1] if windows else math.inf
 
     def late(self, problem: Question, j: int, ready: float, end: float) -> str | None:
-        return self._closed(problem, j, "begins at", ready)
+        return _closed(problem, j, "begins at", ready)
 
     def broken_at(self, tried: Tried) -> str:
         arrives, begins, _ = (min(times) for times in zip(*tried.stops, strict=True))
-        own = self._closed(tried.problem, tried.j, "arrives at", arrives)
-        own = own or self.late(tried.problem, tried.j, begins, 0.0)
+        own = _closed(tried.problem, tried.j, "arrives at", arrives) or self.late(tried.problem, tried.j, begins, 0.0)
         return own or self._others_late(tried) or "at no place in its route are all windows kept"
-
-    def _closed(self, problem: Question, j: int, how: str, ready: float) -> str | None:
-        """That all windows of a task are closed by a time; None: one is not."""
-        windows = problem.model.openings[j]
-        if not windows or ready <= windows[-1][1]:
-            return None
-        at, closes = moments(problem, ready, windows[-1][1])
-        return f"{how} {at} at the earliest, its {self._which(problem, j)} closes at {closes}"
-
-    def _which(self, problem: Question, j: int) -> str:
-        noun = self.called(problem, 0, j, self.word)
-        return noun if len(problem.model.openings[j]) == 1 else f"last {noun}"
 
     def without_limit(self, tasks: tuple[Task, ...]) -> tuple[Task, ...]:
         return tuple(_closing(task, None) if task.window_s else task for task in tasks)
@@ -102,6 +92,21 @@ def _closing(task: Task, closes_s: float | None) -> Task:
     """The task with another end of its last window."""
     *before, (opens, _) = sorted(task.window_s, key=lambda window: window[0])
     return replace(task, window_s=(*before, (opens, closes_s)))
+
+
+def _closed(problem: Question, j: int, how: str, ready: float) -> str | None:
+    """That all windows of a task are closed by a time; None: one is not."""
+    windows = problem.model.openings[j]
+    if not windows or ready <= windows[-1][1]:
+        return None
+    at, closes = moments(problem, ready, windows[-1][1])
+    return f"{how} {at} at the earliest, its {_which(problem, j)} closes at {closes}"
+
+
+def _which(problem: Question, j: int) -> str:
+    if problem.model.given_by("openings", j) not in ("", Window.word):
+        return "last time to begin"
+    return "window" if len(problem.model.openings[j]) == 1 else "last window"
 
 
 def _never_together(problem: Question, j: int) -> str:
