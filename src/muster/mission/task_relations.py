@@ -22,6 +22,12 @@ def _names_tasks(work: Work) -> bool:
     return any(_tasks_named_by(work))
 
 
+def names_in(task: Task) -> tuple[str, ...]:
+    """The tasks that a task refers to."""
+    tied = (name for names in _tasks_named_by(task) for name in names)
+    return (*task.prerequisites, *tied, *(() if task.delivers is None else (task.delivers,)))
+
+
 def relation_faults(mission: MissionData) -> Iterator[Fault]:
     """What is wrong with the relations between tasks."""
     yield from _wrong_names(mission)
