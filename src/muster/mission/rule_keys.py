@@ -41,6 +41,10 @@ class RuleKeys(Checked):
         """The value of a key, its own or one of a rule; None where nothing is said."""
         return self.extra[key] if key in self.extra else getattr(self, key, None)
 
+    def states(self, key: str) -> bool:
+        """Whether a key, its own or one of a rule, has another value than its default."""
+        return key in self.extra or getattr(self, key, None) != getattr(type(self), key, None)
+
     def keys_of(self, rule: type[K]) -> K:
         """What it says by the keys of a rule: an instance of the class that the rule declares, with its defaults."""
         return part_of(rule, self.extra)

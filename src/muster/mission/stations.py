@@ -59,7 +59,6 @@ class Station(Checked):
         Many(Text(), minimum=1),
         "ids of the only robots that may call there",
         default=None,
-        rule="lock",
         carried_out=False,
     )
 

@@ -10,7 +10,7 @@ from muster.mission.errors import NotSupportedError
 from muster.mission.goods import by_commodity
 from muster.mission.mission_parts import all_robots, all_work
 from muster.mission.model import Action, Mission, Point, Task
-from muster.mission.records import findings, stated_rules
+from muster.mission.records import findings, specified
 from muster.mission.value_types import Fault, Path, shown
 from muster.mission.yaml_writer import plain
 
@@ -52,9 +52,10 @@ def _not_carried_out(mission: Mission) -> Iterator[Fault]:
     stations = ((("stations", k), station) for k, station in enumerate(mission.stations))
     records: Iterable[tuple[Path, object]] = chain(all_robots(mission), all_work(mission), stations)
     for path, one in records:
-        for f in (f for f in stated_rules(one) if not f.metadata.get("carried_out", True)):
-            expected = "nothing here yet: carrying out does not know this rule"
-            yield Fault((*path, f.name), shown(plain(getattr(one, f.name))), expected)
+        for f in specified(type(one)):
+            if not f.metadata.get("carried_out", True) and getattr(one, f.name) != f.default:
+                expected = "nothing here yet: carrying out does not know this rule"
+                yield Fault((*path, f.name), shown(plain(getattr(one, f.name))), expected)
 
 
 def _unsupported(mission: Mission) -> Iterator[Fault]:

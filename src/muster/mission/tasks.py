@@ -183,7 +183,6 @@ class Work(RuleKeys, bearer="task"):
         "ids of tasks in whose place it is done: of all that are tied so at most one is",
         default=(),
         if_used=True,
-        rule="either-or",
         carried_out=False,
     )
     load: Amount | None = spec(
@@ -197,7 +196,6 @@ class Work(RuleKeys, bearer="task"):
         "longest time from the end of the task that it delivers to its own begin",
         default=None,
         if_used=True,
-        rule="aboard",
         carried_out=False,
     )
     duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)

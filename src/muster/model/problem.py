@@ -240,21 +240,22 @@ class Problem:
     def asked(self) -> Mapping[str, str]:
         """What not every allocator can do, and the problem asks for: each with the place that does so first."""
         said = {word: where for rule in all_rules() for word, where in rule.asks(self).items() if where is not None}
-        word_of = {primitive: word for rule in all_rules() for primitive, word in rule.asked.items()}
-        given = {word_of[part]: rule for part, rule in self.model.parts.words.items() if part in word_of}
-        found = said | {word: self._stated(rule) for word, rule in given.items() if word not in said}
+        asking = {part: (word, rule.word) for rule in all_rules() for part, word in rule.asked.items()}
+        given = {part: named for part, named in asking.items() if getattr(self.model.parts, part)}
+        words = self.model.parts.words
+        stated = {word: self._stated(part, words.get(part, rule)) for part, (word, rule) in given.items()}
         late = {"lateness": "objective lateness"} if self.objective == "lateness" else {}
-        return found | late | (_RETURN_ASKED if self._makespan_includes_ways_to_ends else {})
+        return stated | said | late | (_RETURN_ASKED if self._makespan_includes_ways_to_ends else {})
 
-    def _stated(self, rule: str) -> str:
-        """The first robot or task with a key that a rule declares, and the key; without one its word."""
-        found = (
-            f"{what} {one.id}: {key}"
-            for what, team in (("robot", self.robots), ("task", self.tasks))
-            for one in team
-            for key in one.extra
-            if key in rules_in_order()[rule].keys
-        )
+    def _stated(self, part: str, rule: str) -> str:
+        """The first task or robot with a key of the rule that gives a primitive, and the key; without one its word."""
+        given, declared = getattr(self.model.parts, part), rules_in_order().get(rule)
+        keys = declared.keys if declared else ()
+        bearers: list[tuple[str, Sequence[Task | Robot]]] = [("task", self.tasks), ("robot", self.robots)]
+        if isinstance(given, dict):  # by the number of a task or a robot
+            first = min(given)
+            bearers = [(what, some[first : first + 1]) for what, some in bearers] + bearers
+        found = (f"{what} {one.id}: {key}" for what, some in bearers for one in some for key in keys if one.states(key))
         return next(found, f"rule {rule}")
 
     @property

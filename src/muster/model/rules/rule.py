@@ -336,7 +336,7 @@ class Rule:
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         """For each word of `asked` the place of a problem that asks for it first; None: none does.
 
-        Where nothing is said it is a robot or task with a key that the rule declares.
+        Where nothing is said it is a task or robot with a key that the rule declares.
         """
         return {}
 
@@ -440,12 +440,6 @@ def first_task(problem: Question, key: str, has: Callable[[int], object]) -> str
     """The first task that has something, named with the key; None: there is none."""
     first = next((task.id for j, task in enumerate(problem.tasks) if has(j)), None)
     return None if first is None else f"task {first}: {key}"
-
-
-def first_robot(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
-    """The same of robots."""
-    first = next((robot.id for i, robot in enumerate(problem.robots) if has(i)), None)
-    return None if first is None else f"robot {first}: {key}"
 
 
 def listed(names: Collection[str]) -> str:

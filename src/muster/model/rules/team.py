@@ -46,13 +46,6 @@ class Team(Rule):
     asked: ClassVar[Mapping[str, str]] = {"seats": "team", "sums": "team"}
     key = "team"
 
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        first = next(filter(problem.model.is_for_team, range(len(problem.tasks))), None)
-        if first is None:
-            return {"team": None}
-        task = problem.tasks[first]
-        return {"team": f"task {task.id}: {'needs' if task.needs else 'team' if task.team else 'robots_needed'}"}
-
     def compile(self, problem: Question, parts: Parts) -> None:
         everybody = np.ones(len(problem.robots), np.bool_)
         skills = problem.holds("skill")
