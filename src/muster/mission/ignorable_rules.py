@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from dataclasses import MISSING, fields, replace
 from typing import TypeVar
 
@@ -19,18 +19,8 @@ IGNORABLE = tuple(word for word, rule in usable_rules().items() if rule.ignorabl
 _IN_THE_PLURAL = ("prerequisite", "skill", "window", "deadline", "shift", "team", "relation", "load")
 _PLURALS = {f"{rule}s": rule for rule in _IN_THE_PLURAL}
 """Words of earlier files and commands, read as before; and the like of the others."""
-_KEYS: Mapping[str, tuple[str, ...]] = {
-    "prerequisite": ("lags",),
-    "window": ("window_s",),
-    "deadline": ("deadline_s",),
-    "shift": ("available_until_s", "shifts_s"),
-    "duty": ("longest_duty_s",),
-    "team": ("robots_needed", "team", "needs"),
-    "relation": ("same_robot_as", "other_robot_than", "starts_with"),
-    "load": ("load", "delivers", "load_capacity", "load_at_start"),
-    "battery": ("battery",),
-}
-"""By rule the keys of tasks and robots that are as by default where it does not hold, beside those that name it."""
+UNTIMED = ("skill", "suitability", "lock", "prerequisite", "capacity")
+"""The rules that say nothing of times, teams, goods and energy; prerequisites do by their lags alone."""
 T = TypeVar("T", Task, Robot)
 
 
@@ -61,9 +51,17 @@ def ignored_rules(words: str | Collection[str]) -> tuple[str, ...]:
     return tuple(rule for rule in IGNORABLE if rule in named)
 
 
+def timed_keys(rule: str) -> tuple[str, ...]:
+    """The keys by which a rule speaks of times, teams, goods and energy."""
+    if rule in UNTIMED:
+        return ("lags",) if rule == "prerequisite" else ()
+    beside = usable_rules()["aboard"].keys if rule == "load" else ()  # which no delivery without goods may have
+    return (*usable_rules()[rule].keys, *beside)
+
+
 def as_it_holds(item: T, ignored: Collection[str]) -> T:
     """A task or robot without the rules that do not hold about times, teams, goods and energy."""
-    keys = {key for rule in ignored for key in _KEYS.get(rule, ())}
-    off = [f for f in fields(item) if f.name in keys or f.metadata.get("rule") in ignored]
+    keys = {key for rule in ignored for key in timed_keys(rule)}
+    off = [f for f in fields(item) if f.name in keys]
     without = {f.name: {} if f.default is MISSING else f.default for f in off}
     return replace(item, **without) if without else item

@@ -43,7 +43,8 @@ class RuleKeys(Checked):
 
     def states(self, key: str) -> bool:
         """Whether a key, its own or one of a rule, has another value than its default."""
-        return key in self.extra or getattr(self, key, None) != getattr(type(self), key, None)
+        own = self.__dataclass_fields__.get(key)
+        return key in self.extra if own is None else getattr(self, key) not in (own.default, {})
 
     def keys_of(self, rule: type[K]) -> K:
         """What it says by the keys of a rule: an instance of the class that the rule declares, with its defaults."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations
+from itertools import chain, combinations
 from operator import attrgetter
 
 from muster.mission.mission_data import MissionData
@@ -18,6 +18,12 @@ _tasks_named_by = attrgetter(*RELATIONS)
 
 def _names_tasks(work: Work) -> bool:
     return any(_tasks_named_by(work))
+
+
+def tasks_named_by(work: Work) -> tuple[str, ...]:
+    """The tasks that one refers to: its prerequisites, those of its relations, and the one that it delivers for."""
+    carried = () if work.delivers is None else (work.delivers,)
+    return tuple(chain(work.prerequisites, *_tasks_named_by(work), carried))
 
 
 def relation_faults(mission: MissionData) -> Iterator[Fault]:

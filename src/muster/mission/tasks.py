@@ -220,6 +220,10 @@ class Work(RuleKeys, bearer="task"):
         """Whether more robots than one may have to do it."""
         return (self.robots_needed or 1) > 1 or bool(self.team) or bool(self.needs)
 
+    def is_open_to(self, robot: str) -> bool:
+        """Whether a robot, by id, is one of those that may do it."""
+        return self.only_robots is None or robot in self.only_robots
+
     def lag(self, prerequisite: str) -> Lag:
         """How long after the end of a prerequisite work begins."""
         return self.lags.get(prerequisite, Lag())

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
-from muster.mission.declared_rules import rules_in_order
+from muster.mission.declared_rules import usable_rules
+from muster.mission.ignorable_rules import timed_keys
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.task_relations import alternatives_of
 from muster.verification.insertions import Insertions
@@ -17,7 +18,6 @@ from muster.verification.travel import Travel
 ROUNDING = 1e-9
 """Relative. A route that fills its capacity exactly may come out above it, the order of additions being free."""
 
-_OF_PAIRS_AND_USAGE = ("skill", "suitability", "lock", "prerequisite", "capacity")
 _OFFERED = ("abilities", "load_capacity", "load_at_start")  # by robots: it binds nothing that no task asks for
 
 
@@ -138,8 +138,7 @@ class Case:
     def is_timed(self) -> bool:
         """Whether anything but prerequisites and capacities depends on times, teams, goods or other further rules."""
         mission = self.mission
-        declared = (rule.keys for word, rule in rules_in_order().items() if word not in _OF_PAIRS_AND_USAGE)
-        keys = {"lags"}.union(*declared).difference(_OFFERED)
+        keys = set[str]().union(*map(timed_keys, usable_rules())).difference(_OFFERED)
         return any(one.states(key) for one in (mission.rules, *mission.robots, *mission.tasks) for key in keys)
 
     def holds(self, rule: str) -> bool:
