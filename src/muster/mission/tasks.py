@@ -224,6 +224,10 @@ class Work(RuleKeys, bearer="task"):
         """Whether a robot, by id, is one of those that may do it."""
         return self.only_robots is None or robot in self.only_robots
 
+    def only_for(self, robot: str) -> Self:
+        """The same work, which this robot alone may do."""
+        return replace(self, only_robots=(robot,))
+
     def lag(self, prerequisite: str) -> Lag:
         """How long after the end of a prerequisite work begins."""
         return self.lags.get(prerequisite, Lag())

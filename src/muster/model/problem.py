@@ -160,6 +160,17 @@ class Problem:
         """(2n + 4m, 3) where tasks are entered and left, robots start and routes end; for one of the robots."""
         return np.concatenate([self._entries[0], self._exits[0]])
 
+    def with_capacities(self, stated: Mapping[int, float | None]) -> Problem:
+        """The problem with other work capacities of some robots; None: unlimited."""
+        robots = list(self.robots)
+        for i, capacity in stated.items():
+            robots[i] = replace(robots[i], work_capacity=capacity)
+        return replace(self, robots=tuple(robots))
+
+    def capacity_for(self, usage: float) -> float:
+        """The work capacity of which a route may use so much."""
+        return usage / self.mission.rules.usable_share
+
     def holds(self, rule: str) -> bool:
         """Whether a rule of IGNORABLE holds."""
         return rule not in self.ignored

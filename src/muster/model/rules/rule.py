@@ -20,7 +20,6 @@ from muster.model.plan_model import PlanModel
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 Routes = list[list[int]]
-Scores = Mapping[str, Mapping[str, float]]
 
 ROUNDING = 2e-9
 """By how much a usage may be above a capacity, relative; a little more than the judge allows."""
@@ -212,13 +211,9 @@ class Change:
         """The task as it would have to be for the robot."""
         return task
 
-    def suitability(self, table: Scores) -> Scores:
-        """The suitability table as it would have to be."""
-        return table
-
-    def more_robots(self) -> tuple[Robot, ...]:
-        """The robots that there would have to be beside those of the mission."""
-        return ()
+    def mission(self, mission: Mission) -> Mission:
+        """The mission as it would have to be, beside the robot and its tasks."""
+        return mission
 
     def other(self, other: Task, task: Task) -> Task:
         """Another task of the mission as it would have to be."""

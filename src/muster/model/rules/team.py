@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from muster.mission.model import Robot, Task, TeamPart
+from muster.mission.model import Mission, Robot, Task, TeamPart
 from muster.mission.texts.near_matches import did_you_mean
 from muster.model.bottleneck import fills, matched, on_some_matching
 from muster.model.parts import Parts
@@ -34,8 +34,8 @@ class MoreRobots(Change):
     def short(self) -> str:
         return self.said
 
-    def more_robots(self) -> tuple[Robot, ...]:
-        return self.robots
+    def mission(self, mission: Mission) -> Mission:
+        return replace(mission, robots=(*mission.robots, *self.robots))
 
 
 class Team(Rule):
