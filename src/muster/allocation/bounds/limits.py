@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -197,6 +197,16 @@ class Limits:
             self._needed[j] = sorted(needed - {j})
         return self._needed[j]
 
+    def with_all_done(self) -> Limits:
+        """These bounds over the plans that do every task: what must follow soon holds back what it follows."""
+        times = _with_followers(self, range(len(self.problem.tasks)))
+        return self if times is None else replace(self, ready=times.ready, begin=times.begin)
+
+    def earliest(self, pairs: Floats) -> Floats:
+        """(n,) by which of some times (m, n) as many robots as a task needs at least are done with it; inf: never."""
+        fewest = list(map(self.rules.least_members, range(len(self.problem.tasks))))
+        return kth_least(np.where(self.usable, pairs, math.inf), fewest)
+
     @cached_property
     def held_back(self) -> dict[int, str]:
         """The tasks that no plan does as one before them may end only so long before, each with what is too late."""
@@ -312,9 +322,15 @@ def _too_far(limits: Limits, j: int) -> str:
 def _held_back(limits: Limits, j: int) -> str:
     """Which task before a task would be too late in every plan that does both, as it may not end too long before."""
     tasks = [j, *limits.must_also(j)]
+    times = _with_followers(limits, tasks)
+    return next((late for k in tasks if k != j and times and (late := _late(limits, times, k))), "")
+
+
+def _with_followers(limits: Limits, tasks: Sequence[int]) -> _Times | None:
+    """When tasks begin as some of them, all done, may follow others only so soon; None: none of them must."""
     gaps = [(k, b, within) for k in tasks for b, _, within in limits.rules.gaps(k) if math.isfinite(within)]
     if not gaps:
-        return ""
+        return None
     times = _Times(limits.ready.copy(), limits.begin.copy(), list(limits.awaited))
     for _ in range(len(tasks) + 1):
         waiting = [
@@ -324,7 +340,7 @@ def _held_back(limits: Limits, j: int) -> str:
         ]
         if not any(waiting) and not _sweep(limits, times):
             break
-    return next((late for k in tasks if k != j and (late := _late(limits, times, k))), "")
+    return times
 
 
 def _late(limits: Limits, times: _Times, k: int) -> str:
@@ -334,6 +350,12 @@ def _late(limits: Limits, times: _Times, k: int) -> str:
         return ""
     late = late_task(problem, k, float(times.ready[k]), begin + float(limits.shortest_work[k]))
     return f"{problem.tasks[k].id} may end only so long before what follows: it {late}" if late else ""
+
+
+def kth_least(values: Floats, counts: Sequence[int]) -> Floats:
+    """(n,) of each column of (m, n) the least value that so many are not above; inf where there are not so many."""
+    ordered = np.sort(np.vstack([values, np.full(values.shape[1], math.inf)]), axis=0)
+    return np.asarray(ordered[[min(k, len(values) + 1) - 1 for k in counts], np.arange(values.shape[1])])
 
 
 def late_task(problem: Problem, j: int, ready: float, end: float) -> str:
