@@ -115,7 +115,7 @@ def admissible_part(problem: Problem, routes: Routes) -> Routes:
 def _timed_part(problem: Problem, routes: Routes) -> Routes:
     """The part of routes that has a schedule: unit after unit is kept that fits with those before it."""
     kept = {j for i, route in enumerate(routes) for j in route[: len(problem.beginning(i))]}
-    place = {j: k for route in routes for k, j in enumerate(route)}
+    place = dict(sorted((j, k) for route in routes for k, j in enumerate(route)))  # the last of a team's places
     units = {tuple(sorted(_unit(problem, j) - kept)) for j in place.keys() - kept}
     pending = sorted(units, key=lambda unit: (max(place.get(j, 0) for j in unit), unit))
     while pending:
