@@ -76,9 +76,7 @@ class Limits:
     @cached_property
     def shortest_work(self) -> Floats:
         """(n,) the least seconds of work of any robot or team."""
-        allowed = np.where(self.problem.allowed, self.work, math.inf)
-        found = [_of_team(self.rules, u, allowed) for u in range(len(self.rules.units))]
-        shortest = np.array([found[self.rules.unit[j]][j] for j in range(len(self.problem.tasks))])
+        shortest = self._of_teams(np.where(self.problem.allowed, self.work, math.inf))
         return np.where(np.isfinite(shortest), shortest, 0.0)
 
     @cached_property
@@ -203,9 +201,12 @@ class Limits:
         return self if times is None else replace(self, ready=times.ready, begin=times.begin)
 
     def earliest(self, pairs: Floats) -> Floats:
-        """(n,) by which of some times (m, n) as many robots as a task needs at least are done with it; inf: never."""
-        fewest = list(map(self.rules.least_members, range(len(self.problem.tasks))))
-        return kth_least(np.where(self.usable, pairs, math.inf), fewest)
+        """(n,) the least of the latest of some times (m, n) of the members of a team for each task; inf: no team."""
+        return self._of_teams(np.where(self.usable, pairs, math.inf))
+
+    def _of_teams(self, pairs: Floats) -> Floats:
+        found = [_of_team(self.rules, u, pairs) for u in range(len(self.rules.units))]
+        return np.array([found[self.rules.unit[j]][j] for j in range(len(self.problem.tasks))])
 
     @cached_property
     def held_back(self) -> dict[int, str]:
@@ -237,8 +238,8 @@ def narrowed(
 
 def untimed(problem: Problem) -> Limits:
     """No bounds, for a problem in which nothing is timed; its pairs depend on their usage alone."""
-    none, at_once = np.empty((0, 0)), np.zeros(len(problem.tasks))
-    return Limits(problem, none, none.astype(np.bool_), none, none, at_once, at_once, (None,) * len(problem.tasks))
+    none = np.empty((0, 0))
+    return replace(_unnarrowed(problem, none, none, none), usable=none.astype(np.bool_))
 
 
 def _unnarrowed(problem: Problem, usage: Floats, way: Floats, home: Floats) -> Limits:
@@ -282,12 +283,10 @@ class _Times:
 def _with_begins(limits: Limits) -> Limits:
     """Earliest begins with the pairs that are still possible."""
     rules, tasks = limits.rules, range(len(limits.problem.tasks))
-    there = np.where(limits.usable, limits.arrival, math.inf)
-    ready = np.array(limits.ready)
-    for u in range(len(rules.units)):
-        latest = max(_of_team(rules, u, there).values())
-        for j in rules.units[u]:
-            ready[j] = max(ready[j], latest) if math.isfinite(latest) else ready[j]
+    there, ready = limits.earliest(limits.arrival), np.array(limits.ready)
+    for unit in rules.units:
+        if math.isfinite(latest := there[unit].max()):
+            ready[unit] = np.maximum(ready[unit], latest)
     times = _Times(ready, np.array([_begin(rules, rules.unit[j], ready) for j in tasks]), list(limits.awaited))
     for _ in range(len(tasks) + 1):
         if not _sweep(limits, times):
@@ -352,12 +351,6 @@ def _late(limits: Limits, times: _Times, k: int) -> str:
     return f"{problem.tasks[k].id} may end only so long before what follows: it {late}" if late else ""
 
 
-def kth_least(values: Floats, counts: Sequence[int]) -> Floats:
-    """(n,) of each column of (m, n) the least value that so many are not above; inf where there are not so many."""
-    ordered = np.sort(np.vstack([values, np.full(values.shape[1], math.inf)]), axis=0)
-    return np.asarray(ordered[[min(k, len(values) + 1) - 1 for k in counts], np.arange(values.shape[1])])
-
-
 def late_task(problem: Problem, j: int, ready: float, end: float) -> str:
     """That task j is too late which is ready, and ends, at these times at the earliest; empty: by no rule."""
     return next((late for rule in problem.rules if (late := rule.late(problem, j, ready, end))), "")
@@ -404,6 +397,4 @@ def _until_able(rules: PlanModel, j: int, values: Floats) -> float:
     for needed, able in rules.sums(j).values():
         enough = np.flatnonzero(np.cumsum(able[order]) >= needed * (1 - ROUNDING))
         latest = max(latest, float(values[order[enough[0]]])) if len(enough) else math.inf
-        if math.isinf(latest):
-            break
     return latest

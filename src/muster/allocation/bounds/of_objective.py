@@ -18,7 +18,7 @@ from muster.allocation.bounds.arrival_bounds import least_arrivals
 from muster.allocation.bounds.arrival_paths import least_arrivals_on_paths
 from muster.allocation.bounds.easier_problems import in_time, opened
 from muster.allocation.bounds.feasibility import least_usages, limits_beside
-from muster.allocation.bounds.limits import Limits, kth_least
+from muster.allocation.bounds.limits import Limits
 from muster.allocation.bounds.spanning import Ways, never, route_bounds
 from muster.allocation.bounds.team_copies import with_copies
 from muster.allocation.bounds.weighed_shares import far_shares, weighed_shares
@@ -213,6 +213,12 @@ def _average(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:
         named[_PATHS] = least_arrivals_on_paths(open_ended, usable, n * max(named.values()), due) / n
     best = max(named, key=lambda name: named[name])
     return Bound(named[best], (best,))
+
+
+def kth_least(values: Floats, counts: Sequence[int]) -> Floats:
+    """(n,) of each column of (m, n) the least value that so many are not above; inf where there are not so many."""
+    ordered = np.sort(np.vstack([values, np.full(values.shape[1], math.inf)]), axis=0)
+    return np.asarray(ordered[[min(k, len(values) + 1) - 1 for k in counts], np.arange(values.shape[1])])
 
 
 def earliest_ends(limits: Limits) -> Floats:
