@@ -31,6 +31,7 @@ from muster.model.rules import Rule, all_rules
 from muster.model.subproblem import cut_down
 from muster.model.travel_and_work import TravelAndWork, floats
 
+_IN_FILES = {"lags": "prerequisites with after_s or within_s"}  # what files call keys that have none of their own
 _RETURN_ASKED = {"makespan-return": "objective makespan: makespan_includes_return"}
 
 
@@ -209,24 +210,25 @@ class Problem(TravelAndWork):
     @cached_property
     def asked(self) -> Mapping[str, str]:
         """What not every allocator can do, and the problem asks for: each with the place that does so first."""
-        said = {word: where for rule in all_rules() for word, where in rule.asks(self).items() if where is not None}
-        asking = {part: (word, rule.word) for rule in all_rules() for part, word in rule.asked.items()}
-        given = {part: named for part, named in asking.items() if getattr(self.model.parts, part)}
-        words = self.model.parts.words
-        stated = {word: self._stated(part, words.get(part, rule)) for part, (word, rule) in given.items()}
+        rules, words, found = {rule.word: rule for rule in all_rules()}, self.model.parts.words, dict[str, str]()
+        for rule in rules.values():
+            for part, word in rule.asked.items():
+                if getattr(self.model.parts, part):
+                    found.setdefault(word, self._stated(part, rules.get(words.get(part, ""), rule)))
         late = {"lateness": "objective lateness"} if self.objective == "lateness" else {}
-        return stated | said | late | (_RETURN_ASKED if self._makespan_includes_ways_to_ends else {})
+        return found | late | (_RETURN_ASKED if self._makespan_includes_ways_to_ends else {})
 
-    def _stated(self, part: str, rule: str) -> str:
-        """The first task or robot with a key of the rule that gives a primitive, and the key; without one its word."""
-        given, declared = getattr(self.model.parts, part), rules_in_order().get(rule)
-        keys = declared.keys if declared else ()
+    def _stated(self, part: str, rule: Rule) -> str:
+        """The first task or robot with a key by which a rule gives a primitive, and the key; without one its word."""
+        given, declared = getattr(self.model.parts, part), rules_in_order().get(rule.word)
+        keys = (rule.asked_by[part],) if part in rule.asked_by else declared.keys if declared else ()
         bearers: list[tuple[str, Sequence[Task | Robot]]] = [("task", self.tasks), ("robot", self.robots)]
         if isinstance(given, dict):  # by the number of a task or a robot
             first = min(given)
             bearers = [(what, some[first : first + 1]) for what, some in bearers] + bearers
-        found = (f"{what} {one.id}: {key}" for what, some in bearers for one in some for key in keys if one.states(key))
-        return next(found, f"rule {rule}")
+        stated = ((what, one.id, key) for what, some in bearers for one in some for key in keys if one.states(key))
+        found = (f"{what} {name}: {_IN_FILES.get(key, key)}" for what, name, key in stated)
+        return next(found, f"rule {rule.word}")
 
     @property
     def _makespan_includes_ways_to_ends(self) -> bool:

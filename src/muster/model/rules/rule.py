@@ -295,6 +295,8 @@ class Rule:
     asked
         of primitives (fields of `Parts`) that not every allocator can keep, the word of `capabilities` for those that
         can. Other rules that give the primitive ask for the same.
+    asked_by
+        the key by which the rule gives one of these, where not each of its keys does.
     for_good
         whether an allocator can keep them that never takes a task out of a route again.
     lifted_late
@@ -315,6 +317,7 @@ class Rule:
     ignorable: ClassVar[bool] = True
     about_one: ClassVar[bool] = True
     asked: ClassVar[Mapping[str, str]] = {}
+    asked_by: ClassVar[Mapping[str, str]] = {}
     for_good: ClassVar[bool] = True
     lifted_late: ClassVar[bool] = False
     of_a_route: ClassVar[bool] = False
@@ -323,13 +326,6 @@ class Rule:
     resource: ClassVar[tuple[str, str] | None] = None
     key: ClassVar[str | None] = None
     no_change: ClassVar[Any] = None
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        """For each word of `asked` the place of a problem that asks for it first; None: none does.
-
-        Where nothing is said it is a task or robot with a key that the rule declares.
-        """
-        return {}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         """Contribute the primitives that it comes to."""
@@ -425,12 +421,6 @@ def above_room(problem: Question, meters: Sequence[Meter], routes: Routes) -> tu
             above += peak - most
             said = said or f"with it {problem.robots[i].id} would have {peak:g} {meter.name}, and has room for {most:g}"
     return above, said or "at every place in its route it would be broken"
-
-
-def first_task(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
-    """The first task that has something, named with the key; None: there is none."""
-    first = next((task.id for j, task in enumerate(problem.tasks) if has(j)), None)
-    return None if first is None else f"task {first}: {key}"
 
 
 def listed(names: Collection[str]) -> str:
