@@ -48,7 +48,7 @@ docs: $(VENV)/documented
 	$(BIN)/python -m tools.docs_site
 
 docs-check: $(VENV)/developed
-	$(BIN)/python -m tools.docs_check $(DOCS)
+	$(BIN)/python -m tools.docs_check $(DOCS_FLAGS) $(DOCS)
 
 docs-check-long: $(VENV)/developed
 	$(BIN)/python -m tools.docs_check --long $(DOCS)
