@@ -6,8 +6,9 @@ import numpy as np
 
 from muster import Mission, Robot, Rules, Task
 from muster.allocation.bounds.feasibility import limits_of
-from muster.allocation.bounds.of_objective import earliest_ends, kth_least
+from muster.allocation.bounds.of_objective import earliest_ends
 from muster.mission.model import Lag
+from muster.model.bottleneck import kth_least
 from muster.model.problem import Problem
 
 
