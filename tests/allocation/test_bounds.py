@@ -14,7 +14,7 @@ import muster
 from muster import Mission, Robot, Rules, Task, core
 from muster.allocation.bounds.arrival_bounds import least_arrivals
 from muster.allocation.bounds.arrival_paths import least_arrivals_on_paths
-from muster.allocation.bounds.earliest_times import opened
+from muster.allocation.bounds.easier_problems import opened
 from muster.allocation.bounds.of_objective import WHY, best_bound, lower_bound
 from muster.allocation.bounds.spanning import Ways, route_bounds
 from muster.allocation.bounds.weighed_shares import far_shares, weighed_shares

@@ -7,7 +7,7 @@ from tests.timed_missions.missions import OBJECTIVES, timed_mission
 
 import muster
 from muster import core
-from muster.allocation.algorithms import greedy, timed_greedy
+from muster.allocation.algorithms import greedy
 from muster.allocation.working_roster import WorkingRoster
 from muster.model.problem import Problem
 
@@ -69,7 +69,7 @@ def test_what_is_kept_from_step_to_step_changes_no_plan(family):
 def test_a_run_that_is_not_thorough_plans_about_as_well(objective, monkeypatch):
     (mission,) = muster.generate("logistics", tasks=200, robots=10)
     thorough = muster.solve(mission, "greedy", objective=objective)
-    monkeypatch.setattr(timed_greedy, "MOST_TASKS_OF_A_THOROUGH_RUN", 100)
+    monkeypatch.setattr(greedy, "MOST_TASKS_OF_A_THOROUGH_RUN", 100)
     near = muster.solve(mission, "greedy", objective=objective)
     assert muster.verify(mission, near, objective=objective).valid
     assert near.tasks_completed >= 0.97 * thorough.tasks_completed

@@ -10,6 +10,7 @@ HOUSE = ROOT / "src" / "muster"
 PAGE = (ROOT / "docs" / "extending-rules.md").read_text(encoding="utf-8")
 MADE = {"mission/muster-1.schema.json"}
 MOST = 4
+DECLARED = "muster/mission/shipped_rules.py"  # a line for each rule that ships, as an entry point is for others
 
 
 def _named() -> set[str]:
@@ -25,10 +26,10 @@ def _touched() -> set[str]:
 
 @pytest.mark.parametrize("key", ["min_tasks", "shifts_s", "longest_duty_s", "longest_aboard_s", "either_or"])
 def test_a_rule_is_written_once(key):
-    """Its key, the rule of planning, the judge's, and what is wrong with values; a line declares that there is one."""
+    """Its key, the rule of planning, the judge's, and what is wrong with values, beside the line that declares it."""
     sources = (path for path in HOUSE.parent.rglob("*") if path.suffix in (".py", ".cpp", ".hpp", ".js"))
     found = {path.relative_to(HOUSE.parent).as_posix() for path in sources if key in path.read_text(encoding="utf-8")}
-    assert 3 <= len(found) <= MOST, sorted(found)
+    assert 3 <= len(found - {DECLARED}) <= MOST, sorted(found)
 
 
 def test_the_page_names_every_file_that_the_rule_touches():

@@ -58,3 +58,21 @@ def test_what_is_ignored_does_not_bind():
     assert model("prerequisite").gaps(1) == []
     words = ("window", "deadline", "shift", "team", "relation", "prerequisite")
     assert not Problem.compile(MISSION, ignored=words).has_timed_rules
+
+
+def test_what_asks_for_more_is_named_by_the_key_of_its_rule():
+    tasks = (
+        Task(id="a", position=(0, 0), load=1, robots_needed=1),
+        Task(id="b", position=(0, 0), load=2, delivers="a", longest_aboard_s=9),
+        Task(id="c", position=(0, 0), prerequisites=("a",)),
+        Task(id="d", position=(0, 0), starts_with=("e",)),
+        Task(id="e", position=(0, 0), other_robot_than=("a",)),
+    )
+    robots = (Robot(id="r", position=(0, 0), min_tasks=1), Robot(id="s", position=(0, 0), min_tasks=2))
+    assert Problem.compile(Mission(robots=robots, tasks=tasks)).asked == {
+        "load": "task a: load",
+        "lag": "task b: longest_aboard_s",
+        "relation": "task e: other_robot_than",
+        "starts-with": "task d: starts_with",
+        "min-tasks": "robot s: min_tasks",
+    }

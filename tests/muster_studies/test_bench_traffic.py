@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from tests.muster_studies.movingai_maps import map_text
 from tests.traffic import annotated
-from tests.traffic.movingai_maps import map_text
 
 from muster_studies.benches.joint_paths import (
     FOLDER,

@@ -50,18 +50,12 @@ def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:
     free = _as_begun(problem, past)
     kept = replace(problem, tasks=free, fixed=tuple(map(tuple, past)), known=problem.measured)
     usages = core.Inspection(kept.core, [list(route) for route in past]).usages
-    capacity = problem.capacity
-    usable = 1.0 - problem.mission.rules.capacity_reserve
-    robots = tuple(
-        replace(robot, work_capacity=usage / usable) if math.isfinite(usage) and _too_much(usage, most) else robot
-        for robot, usage, most in zip(problem.robots, usages, capacity, strict=True)
-    )
+    above = [i for i, most in enumerate(problem.capacity) if math.isfinite(usages[i]) and _too_much(usages[i], most)]
     lost = {problem.tasks[j].id for route, usage in zip(past, usages, strict=True) if math.isinf(usage) for j in route}
-    if robots == problem.robots and not lost:
+    if not above and not lost:
         return _outlasting(kept)
     bearable = replace(
-        kept,
-        robots=robots,
+        kept.with_capacities({i: problem.capacity_for(usages[i]) for i in above}),
         tasks=tuple(t.waiting_for(p for p in t.prerequisites if p not in lost) for t in free),
         fixed=tuple(() if math.isinf(usage) else tuple(route) for route, usage in zip(past, usages, strict=True)),
     )
@@ -122,7 +116,7 @@ def admissible_part(problem: Problem, routes: Routes) -> Routes:
 def _timed_part(problem: Problem, routes: Routes) -> Routes:
     """The part of routes that has a schedule: unit after unit is kept that fits with those before it."""
     kept = {j for i, route in enumerate(routes) for j in route[: len(problem.beginning(i))]}
-    place = {j: k for route in routes for k, j in enumerate(route)}
+    place = dict(sorted((j, k) for route in routes for k, j in enumerate(route)))  # the last of a team's places
     units = {tuple(sorted(_unit(problem, j) - kept)) for j in place.keys() - kept}
     pending = sorted(units, key=lambda unit: (max(place.get(j, 0) for j in unit), unit))
     while pending:

@@ -35,8 +35,10 @@ class DeclaredRule:
     ignorable
         whether a caller can have it ignored.
     robot, task, rules
-        classes whose fields, made by `spec`, are keys of robots, of tasks and of the mission's `rules`. The keys of
-        rules that ship are fields of the classes themselves.
+        classes whose fields, made by `spec`, are keys of robots, of tasks and of the mission's `rules`.
+    shipped_keys
+        the keys of a rule that ships, which are fields of the classes of missions themselves. Where several are stated,
+        the first is named.
     """
 
     order: float
@@ -46,11 +48,13 @@ class DeclaredRule:
     robot: type[Checked] | None = None
     task: type[Checked] | None = None
     rules: type[Checked] | None = None
+    shipped_keys: tuple[str, ...] = ()
 
     @property
-    def keys(self) -> frozenset[str]:
+    def keys(self) -> tuple[str, ...]:
         """Its keys, whoever bears them."""
-        return frozenset(key_of(f) for of in (self.robot, self.task, self.rules) if of for f in specified(of))
+        further = (of for of in (self.robot, self.task, self.rules) if of)
+        return (*self.shipped_keys, *(key_of(f) for of in further for f in specified(of)))
 
     def keys_of(self, bearer: Bearer) -> type[Checked] | None:
         """The class of its keys of one bearer."""

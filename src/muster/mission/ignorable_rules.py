@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from dataclasses import MISSING, fields, replace
 from typing import Any, TypeVar
 
@@ -20,18 +20,8 @@ IGNORABLE = tuple(word for word, rule in usable_rules().items() if rule.ignorabl
 _IN_THE_PLURAL = ("prerequisite", "skill", "window", "deadline", "shift", "team", "relation", "load")
 _PLURALS = {f"{rule}s": rule for rule in _IN_THE_PLURAL}
 """Words of earlier files and commands, read as before; and the like of the others."""
-_KEYS: Mapping[str, tuple[str, ...]] = {
-    "prerequisite": ("lags",),
-    "window": ("window_s",),
-    "deadline": ("deadline_s",),
-    "shift": ("available_until_s",),
-    "team": ("robots_needed", "team", "needs"),
-    "relation": ("same_robot_as", "other_robot_than", "starts_with"),
-    "lock": ("only_robots",),
-    "load": ("load", "delivers", "load_capacity", "load_at_start"),
-    "battery": ("battery",),
-}
-"""By rule the keys of tasks and robots that are as by default where it does not hold, beside those that name it."""
+UNTIMED = ("skill", "suitability", "lock", "prerequisite", "capacity")
+"""The rules that say nothing of times, teams, goods and energy; prerequisites do by their lags alone."""
 T = TypeVar("T", Task, Robot, Station)
 
 
@@ -62,10 +52,17 @@ def ignored_rules(words: str | Collection[str]) -> tuple[str, ...]:
     return tuple(rule for rule in IGNORABLE if rule in named)
 
 
+def timed_keys(rule: str) -> tuple[str, ...]:
+    """The keys by which a rule speaks of times, teams, goods and energy."""
+    if rule in UNTIMED:
+        return ("lags",) if rule == "prerequisite" else ()
+    return usable_rules()[rule].keys
+
+
 def as_it_holds(item: T, ignored: Collection[str]) -> T:
     """A task, robot or station without the rules that do not hold about times, teams, goods, energy and calls."""
-    keys = {key for rule in ignored for key in _KEYS.get(rule, ())}
-    off = {f.name for f in fields(item) if f.name in keys or f.metadata.get("rule") in ignored}
+    keys = {key for rule in ignored for key in (usable_rules()[rule].keys if rule == "lock" else timed_keys(rule))}
+    off = {f.name for f in fields(item) if f.name in keys}
     return without(item, off) if off else item
 
 

@@ -35,7 +35,6 @@ from muster.mission.values.keywords import require_known
 
 C = TypeVar("C")
 _SPECIFIED: dict[type[Any], tuple[Field[Any], ...]] = {}
-_NAMING_RULES: dict[type[Any], tuple[Field[Any], ...]] = {}
 _MISSING = object()
 Instead = tuple[str, Kind, str]
 """A key of files that may stand for another: its name, the kind of its value, and what it means."""
@@ -71,8 +70,8 @@ def spec(
     key
         what files call it, where Python keeps the word for itself (`from`); by default the field's name.
     more
-        further metadata: how a command calls it, where the field counts. `rule` is the word of the rule that the field
-        states, which `--ignore` takes; `beside` the field without which it has no meaning.
+        further metadata: how a command calls it, where the field counts; `beside` is the field without which it has no
+        meaning.
     """
     metadata: dict[str, Any] = {"kind": kind, "doc": doc, "unit": unit, "if_used": if_used} | more
     metadata |= {"key": key} if key else {}
@@ -136,17 +135,6 @@ def key_of(f: Field[Any]) -> str:
 def shown_if_used(cls: type[Any]) -> tuple[str, ...]:
     """The names of the fields that tables show only where some record has them."""
     return tuple(f.name for f in all_keys(cls) if f.metadata["if_used"])
-
-
-def stated_rules(value: Any) -> tuple[Field[Any], ...]:
-    """Return the fields of a record that name their rule, where they hold another value than the default."""
-    return tuple(f for f in _naming_rules(type(value)) if getattr(value, f.name) != f.default)
-
-
-def _naming_rules(cls: type[Any]) -> tuple[Field[Any], ...]:
-    if cls not in _NAMING_RULES:  # looked up for each record of a mission that is judged
-        _NAMING_RULES[cls] = tuple(f for f in specified(cls) if "rule" in f.metadata)
-    return _NAMING_RULES[cls]
 
 
 def instead_of(f: Field[Any]) -> tuple[Instead, ...]:

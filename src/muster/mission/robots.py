@@ -104,17 +104,13 @@ class Robot(RuleKeys, bearer="robot"):
         "when it works and drives: several shifts, between which it rests where it stands",
         default=(),
         if_used=True,
-        rule="shift",
     )
-    min_tasks: int = spec(
-        Whole(), "it does at least so many tasks, or none at all", default=0, if_used=True, rule="min-tasks"
-    )
+    min_tasks: int = spec(Whole(), "it does at least so many tasks, or none at all", default=0, if_used=True)
     longest_duty_s: float | None = spec(
         Number(minimum=0),
         "longest time from leaving its start to the end of its route",
         default=None,
         if_used=True,
-        rule="duty",
     )
     heading_deg: float = spec(Number(), "heading at the start, from east, anticlockwise", default=0.0)
     radius_m: float = spec(Number(minimum=0), "radius of its body", default=0.0)

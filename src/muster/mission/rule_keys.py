@@ -41,6 +41,11 @@ class RuleKeys(Checked):
         """The value of a key, its own or one of a rule; None where nothing is said."""
         return self.extra[key] if key in self.extra else getattr(self, key, None)
 
+    def states(self, key: str) -> bool:
+        """Whether a key, its own or one of a rule, has another value than its default."""
+        own = self.__dataclass_fields__.get(key)
+        return key in self.extra if own is None else getattr(self, key) not in (own.default, {})
+
     def keys_of(self, rule: type[K]) -> K:
         """What it says by the keys of a rule: an instance of the class that the rule declares, with its defaults."""
         return part_of(rule, self.extra)

@@ -28,3 +28,8 @@ class Rules(RuleKeys, bearer="rules"):
         Choice(("profile", "constant")), "travel times: of the motion profile, or by the speed alone", default="profile"
     )
     makespan_includes_return: bool = spec(Flag(), "the makespan counts the ways of robots to their ends", default=False)
+
+    @property
+    def usable_share(self) -> float:
+        """The share of a work capacity that routes may use."""
+        return 1.0 - self.capacity_reserve

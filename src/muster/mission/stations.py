@@ -60,7 +60,6 @@ class Station(Checked):
         Many(Text(), minimum=1),
         "ids of the only robots that may call there",
         default=None,
-        rule="lock",
     )
 
     def for_robots(self, robots: Collection[str]) -> Station | None:

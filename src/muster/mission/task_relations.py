@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations
+from itertools import chain, combinations
 from operator import attrgetter
 
 from muster.mission.mission_data import MissionData
@@ -18,19 +18,15 @@ RELATIONS = ("same_robot_as", "other_robot_than", "starts_with", "either_or")
 _tasks_named_by = attrgetter(*RELATIONS)
 
 
-def _names_tasks(work: Work) -> bool:
-    return any(_tasks_named_by(work))
-
-
-def names_in(task: Task) -> tuple[str, ...]:
-    """The tasks that a task refers to."""
-    tied = (name for names in _tasks_named_by(task) for name in names)
-    return (*task.prerequisites, *tied, *(() if task.delivers is None else (task.delivers,)))
+def tasks_named_by(work: Work) -> tuple[str, ...]:
+    """The tasks that one refers to: its prerequisites, those of its relations, and the one that it delivers for."""
+    carried = () if work.delivers is None else (work.delivers,)
+    return tuple(chain(work.prerequisites, *_tasks_named_by(work), carried))
 
 
 def relation_faults(mission: MissionData) -> Iterator[Fault]:
     """What is wrong with the relations between tasks."""
-    yield from _wrong_names(mission)
+    yield from wrong_names(mission, RELATIONS, once="each task once")
     yield from _contradictions(mission.tasks)
     yield from _needed_together(mission.tasks)
     yield from _split_alternatives(mission)
@@ -86,22 +82,24 @@ def alternatives_of(tasks: Collection[Task]) -> list[tuple[str, ...]]:
     return [tuple(names) for names in sets.values()]
 
 
-def _wrong_names(mission: MissionData) -> Iterator[Fault]:
+def wrong_names(mission: MissionData, keys: Sequence[str], *, once: str, itself: bool = False) -> Iterator[Fault]:
+    """Names of tasks under some keys that no task has, or that stand there twice; or the task's own, unless allowed."""
     ids = [t.id for t in mission.tasks]
     with_new = [*ids, *(t.id for _, t in new_tasks(mission))]
     own, all_of_them = set(ids), set(with_new)
-    for path, task in work_that(_names_tasks, mission):
+    for path, task in work_that(lambda work: any(getattr(work, key) for key in keys), mission):
         known, among = (ids, own) if path[0] == "tasks" else (with_new, all_of_them)
-        for relation in RELATIONS:
-            names = getattr(task, relation)
-            for n, name in enumerate(names):
-                at: Path = (*path, relation, n)
-                if name == getattr(task, "id", None):
+        for key in keys:
+            seen: set[str] = set()
+            for n, name in enumerate(getattr(task, key)):
+                at: Path = (*path, key, n)
+                if name == getattr(task, "id", None) and not itself:
                     yield Fault(at, shown(name), "another task than itself")
                 elif name not in among:
                     yield unknown_id(at, name, known, "task")
-                elif name in names[:n]:
-                    yield Fault(at, shown(name), "each task once")
+                elif name in seen:
+                    yield Fault(at, shown(name), once)
+                seen.add(name)
 
 
 def _contradictions(tasks: Sequence[Task]) -> Iterator[Fault]:

@@ -183,7 +183,6 @@ class Work(RuleKeys, bearer="task"):
         "ids of tasks in whose place it is done: of all that are tied so at most one is",
         default=(),
         if_used=True,
-        rule="either-or",
     )
     load: Amount | None = spec(
         Amounts(), "what it takes on board, or by commodity; below 0: puts down", default=None, if_used=True
@@ -196,7 +195,6 @@ class Work(RuleKeys, bearer="task"):
         "longest time from the end of the task that it delivers to its own begin",
         default=None,
         if_used=True,
-        rule="aboard",
         beside="delivers",
     )
     duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
@@ -220,6 +218,14 @@ class Work(RuleKeys, bearer="task"):
     def is_for_team(self) -> bool:
         """Whether more robots than one may have to do it."""
         return (self.robots_needed or 1) > 1 or bool(self.team) or bool(self.needs)
+
+    def is_open_to(self, robot: str) -> bool:
+        """Whether a robot, by id, is one of those that may do it."""
+        return self.only_robots is None or robot in self.only_robots
+
+    def only_for(self, robot: str) -> Self:
+        """The same work, which this robot alone may do."""
+        return replace(self, only_robots=(robot,))
 
     def lag(self, prerequisite: str) -> Lag:
         """How long after the end of a prerequisite work begins."""

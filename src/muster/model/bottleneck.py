@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -63,3 +64,9 @@ def on_some_matching(fits: Bools) -> Bools:
             rest = np.delete(np.delete(fits, row, axis=0), column, axis=1)
             usable[row, column] = fills(rest)
     return usable
+
+
+def kth_least(values: Floats, counts: Sequence[int]) -> Floats:
+    """(n,) of each column of (m, n) the least value that so many are not above; inf where there are not so many."""
+    ordered = np.sort(np.vstack([values, np.full(values.shape[1], math.inf)]), axis=0)
+    return np.asarray(ordered[[min(k, len(values) + 1) - 1 for k in counts], np.arange(values.shape[1])])

@@ -87,7 +87,7 @@ def _meters(model: PlanModel) -> dict[str, Any]:
         "pending": columns(lambda meter: meter.pending),
         "pickup": np.array(model.pickups if delivers and model.meters else [], dtype=np.int32),
         "most_aboard": columns(lambda meter: meter.most),
-        "load_at_start": columns(lambda meter: meter.at_start),
+        "aboard_at_start": columns(lambda meter: meter.at_start),
         "pending_at_start": columns(lambda meter: meter.pending_at_start),
     }
 

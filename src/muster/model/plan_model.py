@@ -218,11 +218,6 @@ class PlanModel:
         """Whether several robots may have to do a task."""
         return bool(self.parts.seats or self.parts.sums)
 
-    @cached_property
-    def for_teams(self) -> tuple[int, ...]:
-        """The tasks that several robots may have to do."""
-        return tuple(sorted({*self.parts.seats, *self.parts.sums}))
-
     def is_for_team(self, j: int) -> bool:
         """Whether several robots may have to do a task."""
         return j in self.parts.seats or j in self.parts.sums

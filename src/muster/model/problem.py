@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,39 +15,28 @@ from muster import core
 from muster.mission.declared_rules import rules_in_order
 from muster.mission.errors import ParameterError
 from muster.mission.ignorable_rules import as_it_holds, ignored_rules
-from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Station, Task
+from muster.mission.model import OBJECTIVES, Mission, Robot, Task
 from muster.mission.plan import tie_order
 from muster.mission.supported_features import require_supported
 from muster.mission.system.garbage import collector_paused
 from muster.mission.value_types import shown
+from muster.mission.values.arrays import Bools as Bools
+from muster.mission.values.arrays import Floats as Floats
+from muster.mission.values.arrays import Indices as Indices
 from muster.model.core_arrays import core_arrays
-from muster.model.lengths import Measured
 from muster.model.measured_energy import Drains, EnergyLeft
 from muster.model.parts import Begun, Parts, Service
 from muster.model.plan_model import PlanModel
 from muster.model.rules import Rule, all_rules
 from muster.model.subproblem import cut_down
-from muster.model.task_geometry import TaskGeometry
-from muster.model.travel import require_room, straight_table, travel_table
-from muster.model.waiting import NO_WAITING, Waiting
-from muster.model.work_times import work_times
-from muster.motion.actions import duration_of
-from muster.motion.leg_times import LegTimes
-from muster.motion.map_world import body_of
+from muster.model.travel_and_work import TravelAndWork, floats
 
-if TYPE_CHECKING:
-    from muster.model.map_travel import MapTravel
-    from muster.motion.paths.robot_paths import RobotPaths
-
-Floats = npt.NDArray[np.float64]
-Bools = npt.NDArray[np.bool_]
-Indices = npt.NDArray[np.int64]
-
+_IN_FILES = {"lags": "prerequisites with after_s or within_s"}  # what files call keys that have none of their own
 _RETURN_ASKED = {"makespan-return": "objective makespan: makespan_includes_return"}
 
 
-@dataclass(frozen=True, eq=False)
-class Problem:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Problem(TravelAndWork):
     """What an allocator solves. Immutable.
 
     Robots (m) and tasks (n) stand in the order that breaks ties, so that the lower index always wins one.
@@ -72,18 +60,12 @@ class Problem:
         for a mission that asks for what is not supported yet (see `require_supported`).
     """
 
-    mission: Mission
     objective: str
     ignored: tuple[str, ...]
-    robots: tuple[Robot, ...]
-    tasks: tuple[Task, ...]
     fixed: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that its route begins with; empty: none at all
-    known: Measured | None = None  # what the problem of which this is a part knew
     energy_left: tuple[EnergyLeft | None, ...] = ()  # measured, for each robot; empty: none at all
     aboard: tuple[tuple[int, ...], ...] = ()  # for each robot the tasks that deliver what it has on board; empty: none
     levels: tuple[float, ...] = ()  # the energy of each robot at first, measured; inf: without bounds; empty: as stated
-    mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
-    waiting: Waiting = NO_WAITING  # that is expected on ways
     past: Mapping[str, tuple[Task, ...]] | None = None  # of tasks that stand for what was done, that; None: it begins
     begun: tuple[Begun, ...] = ()  # for each robot of a mission under way; empty: it begins
     sooner: tuple[float, ...] = ()  # for each task when it must have ended, beside what rules say; empty: none
@@ -148,31 +130,20 @@ class Problem:
         """The fields alone; everything derived is computed again where the problem is unpickled."""
         return {f.name: getattr(self, f.name) for f in fields(self)}
 
-    @property
-    def places(self) -> tuple[Floats, Floats]:
-        """Where tasks are entered, (n, 3), and robots start, (m, 3), in metres of the map frame.
+    def with_capacities(self, stated: Mapping[int, float | None]) -> Problem:
+        """The problem with other work capacities of some robots; None: unlimited."""
+        robots = list(self.robots)
+        for i, capacity in stated.items():
+            robots[i] = replace(robots[i], work_capacity=capacity)
+        return replace(self, robots=tuple(robots))
 
-        Where that depends on the robot, for one of them.
-        """
-        n, m = len(self.tasks), len(self.robots)
-        return self._entries[0, :n], self._entries[0, n : n + m]
-
-    @property
-    def all_places(self) -> Floats:
-        """(2n + 4m, 3) where tasks are entered and left, robots start and routes end; for one of the robots."""
-        return np.concatenate([self._entries[0], self._exits[0]])
+    def capacity_for(self, usage: float) -> float:
+        """The work capacity of which a route may use so much."""
+        return usage / self.mission.rules.usable_share
 
     def holds(self, rule: str) -> bool:
         """Whether a rule of IGNORABLE holds."""
         return rule not in self.ignored
-
-    @cached_property
-    def task_index(self) -> dict[str, int]:
-        return {task.id: j for j, task in enumerate(self.tasks)}
-
-    @cached_property
-    def robot_index(self) -> dict[str, int]:
-        return {robot.id: i for i, robot in enumerate(self.robots)}
 
     @cached_property
     def model(self) -> PlanModel:
@@ -192,7 +163,7 @@ class Problem:
     def amounts(self, of: Callable[[Task], float]) -> Floats:
         """(n,) an amount of each task; of one that stands for what a robot has done so far, what that sums to."""
         past = self.past or {}
-        return _floats(sum(map(of, past.get(task.id, (task,)))) for task in self.tasks)
+        return floats(sum(map(of, past.get(task.id, (task,)))) for task in self.tasks)
 
     @property
     def capacity(self) -> Floats:
@@ -241,24 +212,25 @@ class Problem:
     @cached_property
     def asked(self) -> Mapping[str, str]:
         """What not every allocator can do, and the problem asks for: each with the place that does so first."""
-        word_of = {primitive: word for rule in all_rules() for primitive, word in rule.asked.items()}
-        given = {word_of[part]: rule for part, rule in self.model.parts.words.items() if part in word_of}
-        asks = ((rule.word, word, where) for rule in all_rules() for word, where in rule.asks(self).items())
-        said = {word: where for rule, word, where in asks if where is not None and given.get(word, rule) == rule}
-        found = said | {word: self._stated(rule) for word, rule in given.items() if word not in said}
+        rules, words, found = {rule.word: rule for rule in all_rules()}, self.model.parts.words, dict[str, str]()
+        for rule in rules.values():
+            for part, word in rule.asked.items():
+                if getattr(self.model.parts, part):
+                    found.setdefault(word, self._stated(part, rules.get(words.get(part, ""), rule)))
         late = {"lateness": "objective lateness"} if self.objective == "lateness" else {}
         return found | late | (_RETURN_ASKED if self._makespan_includes_ways_to_ends else {})
 
-    def _stated(self, rule: str) -> str:
-        """The first robot or task with a key that a rule declares, and the key; without one its word."""
-        found = (
-            f"{what} {one.id}: {key}"
-            for what, team in (("robot", self.robots), ("task", self.tasks))
-            for one in team
-            for key in one.extra
-            if key in rules_in_order()[rule].keys
-        )
-        return next(found, f"rule {rule}")
+    def _stated(self, part: str, rule: Rule) -> str:
+        """The first task or robot with a key by which a rule gives a primitive, and the key; without one its word."""
+        given, declared = getattr(self.model.parts, part), rules_in_order().get(rule.word)
+        keys = (rule.asked_by[part],) if part in rule.asked_by else declared.keys if declared else ()
+        bearers: list[tuple[str, Sequence[Task | Robot]]] = [("task", self.tasks), ("robot", self.robots)]
+        if isinstance(given, dict):  # by the number of a task or a robot
+            first = min(given)
+            bearers = [(what, some[first : first + 1]) for what, some in bearers] + bearers
+        stated = ((what, one.id, key) for what, some in bearers for one in some for key in keys if one.states(key))
+        found = (f"{what} {name}: {_IN_FILES.get(key, key)}" for what, name, key in stated)
+        return next(found, f"rule {rule.word}")
 
     @property
     def _makespan_includes_ways_to_ends(self) -> bool:
@@ -306,14 +278,6 @@ class Problem:
         """The rules that hold."""
         return tuple(rule for rule in all_rules() if not rule.ignorable or self.holds(rule.word))
 
-    def action_refusal(self, i: int, j: int) -> str | None:
-        """Why robot i cannot do the action of task j, whatever the rules; None if it can."""
-        return self._task_geometry.refusal(i, j)
-
-    def actions_refused(self, i: int) -> frozenset[int]:
-        """The tasks whose actions robot i cannot do."""
-        return self._task_geometry.refused(i)
-
     @cached_property
     def allowed(self) -> Bools:
         """(m, n) whether robot i may do task j: skills, suitability, locks. Of a large team that is a large table."""
@@ -353,7 +317,7 @@ class Problem:
         table = self.mission.suitability
         if table is None:
             return np.ones((len(self.robots), len(self.tasks)))
-        rows = {kind: _floats(scores.get(t.type or "", 0.0) for t in self.tasks) for kind, scores in table.items()}
+        rows = {kind: floats(scores.get(t.type or "", 0.0) for t in self.tasks) for kind, scores in table.items()}
         return np.array([rows[r.type or ""] for r in self.robots]).reshape(len(self.robots), len(self.tasks))
 
     @cached_property
@@ -375,15 +339,15 @@ class Problem:
             objective=objective,
             usage_is_time=in_time,
             capacity=self.capacity,
-            speed=_floats(r.speed_mps for r in self.robots),
-            available_from=_floats(r.available_from_s for r in self.robots),
+            speed=floats(r.speed_mps for r in self.robots),
+            available_from=floats(r.available_from_s for r in self.robots),
             must_end=must_end,
             fixed=np.array([len(self.beginning(i)) for i in range(len(self.robots))], dtype=np.int32),
             actuation_cost=measured.costs,
             work_class=measured.work_classes,
             work_seconds=self._work_times[0],
             time_class=self._work_times[1],
-            priority=_floats(t.priority for t in self.tasks),
+            priority=floats(t.priority for t in self.tasks),
             allowed=self.allowed_by_kind,
             kind=self.kinds,
             prerequisites=self.model.awaited,
@@ -402,107 +366,6 @@ class Problem:
         """The problem as the core holds it."""
         must_end = np.array([r.place_at_end(self.mission.rules) is not None for r in self.robots], dtype=np.bool_)
         return self._core(self.objective, self.in_time, must_end)
-
-    @cached_property
-    def travel(self) -> tuple[Floats, npt.NDArray[np.int32]]:
-        """Travel tables and each robot's table; empty where travel is straight.
-
-        The table is (classes, n + 2m, n + 2m) metres between tasks, starts and ends of robots, inf where there is no
-        way.
-        """
-        return self.measured.table, self.measured.classes
-
-    @property
-    def work_classes(self) -> npt.NDArray[np.int32]:
-        """(m,) of one class are robots for which every task costs the same metres."""
-        return self.measured.work_classes
-
-    @cached_property
-    def measured(self) -> Measured:
-        if self.known is not None:
-            return self.known
-        geometry, none = self._task_geometry, np.empty(0, dtype=np.int32)
-        if self.has_paths:
-            return self._over_map.measured(os.cpu_count() or 1)
-        if self.mission.travel_rule == "matrix":
-            table, classes = travel_table(self.mission, self.robots, self.tasks)
-        else:
-            table = straight_table(self.mission, self._exits, self._entries)
-            classes = geometry.classes if len(table) else none
-        legs = geometry.legs(lambda _, leg: math.dist(*leg))
-        return Measured(table, classes, geometry.costs, geometry.classes, legs)
-
-    @cached_property
-    def _task_geometry(self) -> TaskGeometry:
-        return TaskGeometry.of(self.robots, self.tasks, by_body=self.has_paths)
-
-    @cached_property
-    def has_paths(self) -> bool:
-        """Whether legs are paths over the map: shortest ones, or straight ones that closed areas may cross."""
-        if not self.mission.has_straight_legs_among_areas:
-            return self.mission.travel_rule == "map"
-        return not all(self.robot_paths.is_open(body_of(robot), self._all_points) for robot in self.robots)
-
-    @cached_property
-    def _all_points(self) -> Floats:
-        """(k, 3) metres, map frame: where legs and the work on tasks begin and end."""
-        geometry = TaskGeometry.of(self.robots, self.tasks, by_body=False)
-        passed = [(*point, 0.0)[:3] for doing in geometry.moving.values() for point in doing.points]
-        places = [self._with_robots(geometry.entries), self._with_robots(geometry.exits), np.array(passed, np.float64)]
-        return np.concatenate([part.reshape(-1, 3) for part in places])
-
-    @cached_property
-    def robot_paths(self) -> RobotPaths:
-        """Over the mission's map."""
-        from muster.motion.paths.robot_paths import RobotPaths
-
-        return RobotPaths.of(self.mission) if self.mapped is None else self.mapped
-
-    @cached_property
-    def _over_map(self) -> MapTravel:
-        require_room(self.mission, self._exits.shape[1], "travel over a map")
-        return self.over(self.robot_paths)
-
-    def over(self, robot_paths: RobotPaths) -> MapTravel:
-        """Travel between the places by paths over the map, whatever the mission's rule."""
-        from muster.model.map_travel import MapTravel
-
-        geometry = self._task_geometry if self.has_paths else TaskGeometry.of(self.robots, self.tasks, by_body=True)
-        exits, entries = self._with_robots(geometry.exits), self._with_robots(geometry.entries)
-        return MapTravel.of(robot_paths, self.robots, geometry, exits, entries)
-
-    def no_way_to(self, i: int, j: int) -> str:
-        """Why robot i has no path to task j, or along its way points."""
-        if self.known is not None or not self.has_paths:
-            return "there is no way to it"
-        return self._over_map.why_not(i, self.start(i), j)
-
-    @cached_property
-    def _duration(self) -> Floats:
-        return _floats(math.nan if (d := duration_of(t)) is None else d for t in self.tasks)
-
-    @cached_property
-    def _entries(self) -> Floats:
-        """(classes, n + 2m, 3) metres, map frame: where tasks are entered, robots start and routes end."""
-        return self._with_robots(self._task_geometry.entries)
-
-    @cached_property
-    def _exits(self) -> Floats:
-        """(classes, n + 2m, 3) metres, map frame: where tasks are left, robots start and routes end."""
-        return self._with_robots(self._task_geometry.exits)
-
-    def _with_robots(self, portals: Floats) -> Floats:
-        places = np.array([(*p, 0.0)[:3] for p in self._robots_places], dtype=np.float64)
-        return np.concatenate([portals, np.broadcast_to(places, (len(portals), *places.shape))], axis=1)
-
-    @property
-    def _robots_places(self) -> list[Point]:
-        ends = [r.place_at_end(self.mission.rules) or r.position for r in self.robots]
-        return [*(r.position for r in self.robots), *ends, *(station.position for station in self.stations)]
-
-    @property
-    def stations(self) -> tuple[Station, ...]:
-        return self.mission.stations
 
     @cached_property
     def energy_reaches(self) -> Bools:
@@ -525,90 +388,9 @@ class Problem:
             raise ParameterError("routes: tasks wait for each other for ever; expected orders in which all can begin")
         return weight, objective
 
-    @property
-    def in_time(self) -> bool:
-        """Whether usage is time."""
-        return self.mission.rules.usage == "time"
-
-    @property
-    def usage_unit(self) -> str:
-        return "s" if self.in_time else "m"
-
-    def start(self, i: int) -> int:
-        """The place where robot i starts."""
-        return len(self.tasks) + i
-
-    def end(self, i: int) -> int:
-        """The place where robot i's route ends, if it must end somewhere."""
-        return len(self.tasks) + len(self.robots) + i
-
-    @cached_property
-    def leg_times(self) -> tuple[LegTimes, ...]:
-        """For each robot how long legs take."""
-        over_map = self.mission.travel_rule == "map" if self.known is None else self.known.over_map
-        return tuple(LegTimes.of(robot, self.mission.rules, over_map=over_map) for robot in self.robots)
-
-    def metres(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
-        """(len(places), len(to)) metres that robot i travels between places."""
-        table, classes = self.travel
-        if len(table):
-            return np.asarray(table[classes[i]][np.asarray(places, np.int64)[:, None], np.asarray(to, np.int64)[None]])
-        return np.asarray(np.linalg.norm(self._exits[0, places][:, None] - self._entries[0, to][None], axis=2))
-
-    def legs(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
-        """(len(places), len(to)) travel usage of robot i between places."""
-        if self.in_time:
-            return self.travel_seconds(i, places, to)
-        waits_m = self.waiting.of(i, places, to) * self.robots[i].speed_mps
-        return np.asarray(self.metres(i, places, to) + waits_m)
-
-    def travel_seconds(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
-        """(len(places), len(to)) the time that robot i takes between places."""
-        return np.asarray(self._driving_seconds(i, places, to) + self.waiting.of(i, places, to))
-
-    def _driving_seconds(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
-        metres, profile = self.metres(i, places, to), self.leg_times[i]
-        if profile.is_constant:
-            return np.asarray(metres / profile.speed_mps)
-        k = self._task_geometry.classes[i]
-        apart = self._entries[k, to][None] - self._exits[k, places][:, None]
-        return np.asarray(profile.seconds(metres, np.abs(apart[..., 2]), np.linalg.norm(apart, axis=2)))
-
     def back(self, i: int, end_s: float, j: int) -> float:
         """When robot i, which ends work on its last task j at a time, is at the end of its route."""
         if self.robots[i].place_at_end(self.mission.rules) is None:
             return end_s
         way = self.travel_seconds(i, [j], [self.end(i)])[0]
         return float((self.model.set_out(i, np.array([end_s]), way) + way)[0])
-
-    def work_usage(self, i: int) -> Floats:
-        """(n,) usage of robot i for the work of each task."""
-        return self.work_seconds(i) if self.in_time else self._work_metres(i)
-
-    def work_seconds(self, i: int) -> Floats:
-        """(n,) the time that robot i takes for the work of each task."""
-        seconds, classes = self._work_times
-        return np.asarray(seconds[classes[i]])
-
-    @cached_property
-    def _work_times(self) -> tuple[Floats, npt.NDArray[np.int32]]:
-        return work_times(self.robots, self._duration, self.leg_times, self._task_geometry, self.measured)
-
-    def _work_metres(self, i: int) -> Floats:
-        measured = self.measured
-        return np.asarray(measured.costs[measured.work_classes[i]])
-
-    def shortcuts(self) -> Indices:
-        """Tasks through which a way can be shorter than the direct one."""
-        return self._shortcuts
-
-    @cached_property
-    def _shortcuts(self) -> Indices:
-        if len(self.travel[0]) or len(self.waiting.seconds):
-            return np.arange(len(self.tasks))
-        n = len(self.tasks)
-        return np.flatnonzero((self._entries[0, :n] != self._exits[0, :n]).any(axis=1))
-
-
-def _floats(values: Iterable[float]) -> Floats:
-    return np.array(list(values), dtype=np.float64)

@@ -99,8 +99,9 @@ class UnderWay:
                 self._soon_after.setdefault(k, []).append(j)
 
     def _compiled(self, tasks: tuple[Task, ...], robots: Sequence[Robot]) -> PlanModel:
-        rules = self.mission.rules
-        return Problem(self.mission, rules.objective, tuple(self.ignored), tuple(robots), tasks).model
+        mission, ignored = self.mission, tuple(self.ignored)
+        objective = mission.rules.objective
+        return Problem(mission=mission, objective=objective, ignored=ignored, robots=tuple(robots), tasks=tasks).model
 
     # What is asked of a task, whatever has happened.
 

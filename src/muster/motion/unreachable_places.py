@@ -104,7 +104,7 @@ def _places_of_robot(k: int, robot: Robot) -> Iterator[tuple[Path, Point]]:
 
 def _places_of_task(k: int, task: Task, mission: Mission) -> dict[tuple[Path, Point, Body], None]:
     """The places that robots visit for a task, those of an action by robot, each once and in order."""
-    allowed = [r for r in mission.robots if task.only_robots is None or r.id in task.only_robots]
+    allowed = [r for r in mission.robots if task.is_open_to(r.id)]
     if task.action is None or not task.action.has_geometry:
         bodies = dict.fromkeys(map(body_of, allowed))
         return dict.fromkeys((path, point, body) for path, point in _portals(k, task) for body in bodies)

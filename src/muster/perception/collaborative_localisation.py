@@ -7,15 +7,11 @@ consistent whatever they share ([tcf-thesis], section 2.2.2, reviews the idea).
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from muster.mission.errors import ParameterError
-from muster.motion.frames import wrapped
 from muster.perception.errors import GroundErrors
-from muster.perception.ground_fusion import HEADING
-from muster.perception.kalman import Correction, Estimate, Floats, extended_correction, gated
+from muster.perception.ground_fusion import range_and_bearing_off, range_and_bearing_to
+from muster.perception.kalman import Correction, Estimate, extended_correction, gated
 
 _SHARES = np.linspace(0.05, 0.95, 19)
 """Of the own knowledge, which are tried."""
@@ -61,24 +57,8 @@ def _spread(estimate: Estimate) -> float:
 def _corrected(
     own: Estimate, mate: Estimate, seen: tuple[float, float], errors: GroundErrors, share: float
 ) -> Correction:
-    place, heading = mate.mean[:2], HEADING
-
-    def sensor(state: Floats) -> tuple[Floats, Floats]:
-        east, north = place - state[:2]
-        away = math.hypot(east, north)
-        if away == 0:
-            raise ParameterError(f"mate: {place.tolist()}; expected another place than the robot's own")
-        derivative = np.zeros((2, len(state)))
-        derivative[0, :2] = -east / away, -north / away
-        derivative[1, :2] = north / away**2, -east / away**2
-        derivative[1, heading] = -1.0
-        return np.array([away, math.atan2(north, east) - state[heading]]), derivative
-
+    sensor = range_and_bearing_to(mate.mean[:2], "mate: {}; expected another place than the robot's own")
     by_place = -sensor(own.mean)[1][:, :2]  # moving the mate moves the measurement the other way
     spread = by_place @ (mate.covariance[:2, :2] / share) @ by_place.T
     uncertainty = spread + np.diag([errors.range_m**2, errors.bearing_rad**2])
-    return extended_correction(own, sensor, seen, uncertainty, _difference)
-
-
-def _difference(seen: Floats, expected: Floats) -> Floats:
-    return np.array([seen[0] - expected[0], wrapped(seen[1] - expected[1])])
+    return extended_correction(own, sensor, seen, uncertainty, range_and_bearing_off)

@@ -7,7 +7,7 @@ four corners cross, which is the image of the tag's middle from every side; the 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -51,6 +51,12 @@ class Sightings:
 
     all: tuple[Sighting, ...]
     repeated: tuple[int, ...]
+
+    @classmethod
+    def of(cls, seen: Sequence[Sighting]) -> Sightings:
+        """Return these, which are in order."""
+        times = Counter(sighting.tag for sighting in seen)
+        return cls(tuple(seen), tuple(tag for tag, count in times.items() if count > 1))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,9 +119,7 @@ class TagDetector:
         """
         found = self._detector.detect(np.ascontiguousarray(grey(image, intrinsics)))
         sure = [f for f in found if self._counts(f["hamming"], f["margin"])]
-        seen = [_sighting(f) for f in sorted(sure, key=lambda f: (f["id"], *f["center"]))]
-        times = Counter(sighting.tag for sighting in seen)
-        return Sightings(tuple(seen), tuple(tag for tag, count in times.items() if count > 1))
+        return Sightings.of([_sighting(f) for f in sorted(sure, key=lambda f: (f["id"], *f["center"]))])
 
     def _counts(self, corrected: int, margin: float) -> bool:
         return corrected <= self._parameters.most_corrected and margin >= self._parameters.least_margin

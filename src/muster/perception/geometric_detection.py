@@ -6,7 +6,6 @@ and no poor light; the only error of detection is that of the corners.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -38,9 +37,7 @@ def sightings_of(
     in_picture = view.sees([tag.pose[:3, 3] for tag in tags])  # quick, as most are not
     near = [tag for tag, inside in zip(tags, in_picture, strict=True) if inside]
     seen = [sighting for tag in near if (sighting := _sighting(tag, view, random, corner_px)) is not None]
-    seen.sort(key=lambda sighting: (sighting.tag, *sighting.centre))
-    times = Counter(sighting.tag for sighting in seen)
-    return Sightings(tuple(seen), tuple(tag for tag, count in times.items() if count > 1))
+    return Sightings.of(sorted(seen, key=lambda sighting: (sighting.tag, *sighting.centre)))
 
 
 def _sighting(tag: GroundTag, view: View, random: np.random.Generator, corner_px: float) -> Sighting | None:

@@ -12,6 +12,7 @@ product of both it would teach the filter a slip out of noise alone.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
@@ -161,24 +162,36 @@ def by_landmark(
     ParameterError
         if the estimated position is that of the landmark: it has no bearing then.
     """
-    place = np.asarray(landmark, dtype=np.float64)
+    sensor = range_and_bearing_to(
+        np.asarray(landmark, dtype=np.float64), "landmark: {}; expected one that is not where the robot is"
+    )
+    uncertainty = np.diag([errors.range_m**2, errors.bearing_rad**2])
+    seen = [range_m, bearing_rad]
+    return extended_correction(estimate, sensor, seen, uncertainty, range_and_bearing_off).with_angle(HEADING)
+
+
+def range_and_bearing_to(place: Floats, refusal: str) -> Callable[[Floats], tuple[Floats, Floats]]:
+    """Return the sensor of range and bearing to a place: of a state, the measurement expected and its derivative.
+
+    The sensor raises ParameterError with the refusal, filled with the place, where the robot is at the place itself.
+    """
 
     def sensor(state: Floats) -> tuple[Floats, Floats]:
         east, north = place - state[:2]
         away = math.hypot(east, north)
         if away == 0:
-            raise ParameterError(f"landmark: {place.tolist()}; expected one that is not where the robot is")
-        derivative = np.zeros((2, _NUMBERS))
+            raise ParameterError(refusal.format(place.tolist()))
+        derivative = np.zeros((2, len(state)))
         derivative[0, :2] = -east / away, -north / away
-        derivative[1, :3] = north / away**2, -east / away**2, -1.0
+        derivative[1, :2] = north / away**2, -east / away**2
+        derivative[1, HEADING] = -1.0
         return np.array([away, math.atan2(north, east) - state[HEADING]]), derivative
 
-    uncertainty = np.diag([errors.range_m**2, errors.bearing_rad**2])
-    seen = [range_m, bearing_rad]
-    return extended_correction(estimate, sensor, seen, uncertainty, _range_and_bearing).with_angle(HEADING)
+    return sensor
 
 
-def _range_and_bearing(seen: Floats, expected: Floats) -> Floats:
+def range_and_bearing_off(seen: Floats, expected: Floats) -> Floats:
+    """Return by how much a range and a bearing differ from those expected."""
     return np.array([seen[0] - expected[0], wrapped(seen[1] - expected[1])])
 
 

@@ -13,7 +13,7 @@ from muster.mission.goods import as_amount
 from muster.mission.ignorable_rules import as_it_holds
 from muster.mission.model import Mission, Point, Robot, Task
 from muster.mission.system.clock import TIME_ROUNDING_S
-from muster.mission.task_relations import beginning_apart, names_in
+from muster.mission.task_relations import beginning_apart, tasks_named_by
 from muster.state.reasons import begins_with, cancelled_at, some_of
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ class Ledger:
         self.tasks[task.id] = as_it_holds(task, self.ignored)
         self.touched[task.id] = None
         self._tasks_changed()
-        if names_in(task) and (self.starts_s or self.ends_s or self.cancelled):
+        if tasks_named_by(task) and (self.starts_s or self.ends_s or self.cancelled):
             self._expire_if_too_late(task.id)
 
     def _expire_if_too_late(self, task: str) -> None:
@@ -355,7 +355,7 @@ class Ledger:
         over = {name for times in (self.ends_s, self.cancelled) for name, at_s in times.items() if at_s < before_s}
         over |= {name for name in self.expired if self.is_open(name)}
         over |= {name for name in self.model.replaced(self.ends_s, self.tasks) if self.is_open(name)}
-        needed = {name for task in self.tasks.values() if task.id not in over for name in names_in(task)}
+        needed = {name for task in self.tasks.values() if task.id not in over for name in tasks_named_by(task)}
         return over - needed
 
     def retire(self, tasks: Collection[str]) -> None:
@@ -395,7 +395,7 @@ class Ledger:
 
 def _out(task: Task, gone: Mapping[str, str]) -> str:
     """Robots that take no part any more and might have done a task."""
-    who = [f"{robot} ({since})" for robot, since in gone.items() if not task.only_robots or robot in task.only_robots]
+    who = [f"{robot} ({since})" for robot, since in gone.items() if task.is_open_to(robot)]
     return f"; no longer taking part: {some_of(who)}" if who else ""
 
 

@@ -109,7 +109,7 @@ def task_motions(mission: Mission, robots: Sequence[Robot]) -> Iterator[TaskMoti
     """How each task is done by each of these robots that may do it and can."""
     for task in mission.tasks:
         for robot in robots:
-            if task.only_robots is None or robot.id in task.only_robots:
+            if task.is_open_to(robot.id):
                 motion = plan(task, robot)
                 if isinstance(motion, TaskMotion):
                     yield motion

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
+from muster.mission.declared_rules import usable_rules
+from muster.mission.ignorable_rules import timed_keys
 from muster.mission.model import Mission, Robot, Task
-from muster.mission.records import stated_rules
 from muster.mission.task_relations import alternatives_of
 from muster.verification.insertions import Insertions
 from muster.verification.measure import MeasuredRoute
@@ -16,6 +17,8 @@ from muster.verification.travel import Travel
 
 ROUNDING = 1e-9
 """Relative. A route that fills its capacity exactly may come out above it, the order of additions being free."""
+
+_OFFERED = ("abilities", "load_capacity", "load_at_start")  # by robots: it binds nothing that no task asks for
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,19 +138,8 @@ class Case:
     def is_timed(self) -> bool:
         """Whether anything but prerequisites and capacities depends on times, teams, goods or other further rules."""
         mission = self.mission
-        late = any(robot.available_until_s is not None for robot in mission.robots)
-        further = any(map(stated_rules, (*mission.robots, *mission.tasks)))
-        foreign = any(bearer.extra for bearer in (mission.rules, *mission.robots, *mission.tasks))
-        return (late or further or foreign or self.has_goods or self.has_energy) or any(
-            task.window_s
-            or task.deadline_s is not None
-            or task.lags
-            or task.is_for_team
-            or task.same_robot_as
-            or task.other_robot_than
-            or task.starts_with
-            for task in mission.tasks
-        )
+        keys = set[str]().union(*map(timed_keys, usable_rules())).difference(_OFFERED)
+        return any(one.states(key) for one in (mission.rules, *mission.robots, *mission.tasks) for key in keys)
 
     def holds(self, rule: str) -> bool:
         """Whether a rule holds."""

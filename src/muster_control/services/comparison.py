@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping
 from typing import Any
 
@@ -28,13 +29,11 @@ def compared(a: PlanEntry, verdict_a: Mapping[str, Any], b: PlanEntry, verdict_b
     -------
     `plans`: of each `id`, `version`, `mission_version`, `allocator`, `valid`, `objective_name`; `figures`: of each
     `name`, `a`, `b`, `change` (b - a; None where one is not known) and `better` (`a`, `b` or None); `moved`: of each
-    task that another robot does, or none, `task`, `a` and `b`; `same`: how many tasks stay with their robot.
+    task that other robots do, or none, `task`, `a` and `b`; `same`: how many tasks stay with their robots.
     """
-    doers = [_doers(verdict) for verdict in (verdict_a, verdict_b)]
-    tasks = list(doers[0] | doers[1])
-    moved = [
-        {"task": t, "a": doers[0].get(t), "b": doers[1].get(t)} for t in tasks if doers[0].get(t) != doers[1].get(t)
-    ]
+    who = [doers(verdict) for verdict in (verdict_a, verdict_b)]
+    tasks = list(who[0] | who[1])
+    moved = [{"task": t, "a": who[0].get(t), "b": who[1].get(t)} for t in tasks if who[0].get(t) != who[1].get(t)]
     one_objective = verdict_a["objective_name"] == verdict_b["objective_name"]
     return {
         "plans": {"a": _head(a, verdict_a), "b": _head(b, verdict_b)},
@@ -54,9 +53,13 @@ def _head(entry: PlanEntry, verdict: Mapping[str, Any]) -> dict[str, Any]:
     return {**own, "allocator": entry.plan.get("allocator"), **judged}
 
 
-def _doers(verdict: Mapping[str, Any]) -> dict[str, str]:
-    """Which robot does each task."""
-    return {task: route["robot"] for route in verdict["routes"] for task in route["tasks"]}
+def doers(plan: Mapping[str, Any]) -> dict[str, str]:
+    """Return which robot does each task of a plan or verdict; the robots of a team in the order of the routes."""
+    robots = defaultdict[str, list[str]](list)
+    for route in plan["routes"]:
+        for task in route["tasks"]:
+            robots[str(task)].append(route["robot"])
+    return {task: ", ".join(names) for task, names in robots.items()}
 
 
 def _figure(name: str, a: float | None, b: float | None, best: str) -> dict[str, Any]:

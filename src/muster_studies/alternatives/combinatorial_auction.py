@@ -20,7 +20,7 @@ import numpy as np
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.auctions.auction_terms import BidTerms
 from muster.allocation.auctions.auctioneer import Auctioneer, OnRound
-from muster.allocation.auctions.book_keeper import book_of
+from muster.allocation.auctions.book_keeper import held
 from muster.allocation.auctions.winners import Floats, Sale
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
@@ -62,9 +62,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
         until.cut()
         return auctioneer
 
-    held = hold(stop)
-    stop.improved(*problem.value(held.routes))
-    return Outcome(held.routes, book_of(problem, held.round, held.sales, hold))
+    return held(problem, stop, hold)
 
 
 def award(auctioneer: Auctioneer, winners: tuple[BundleBid, ...], until: Stop) -> bool:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.auctions.auction_terms import BidTerms
 from muster.allocation.auctions.auctioneer import Auctioneer, OnRound
-from muster.allocation.auctions.book_keeper import book_of
+from muster.allocation.auctions.book_keeper import held
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
 from muster.model.problem import Problem
@@ -58,9 +58,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
                 manager.assign(sale)
         return manager
 
-    held = hold(stop)
-    stop.improved(*problem.value(held.routes))
-    return Outcome(held.routes, book_of(problem, held.round, held.sales, hold))
+    return held(problem, stop, hold)
 
 
 def announcements(problem: Problem, order: str) -> Iterator[int]:

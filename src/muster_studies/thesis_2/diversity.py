@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from muster.allocation.algorithms import genetic
-from muster.allocation.algorithms.strings import Decoded, Strings, diversity, random_strings
 from muster.allocation.allocator import Routes
 from muster.allocation.stop import Stop
 from muster.model.problem import Problem
 from muster_studies.alternatives import ipga, order_crossover
+from muster_studies.alternatives.strings import Decoded, Strings, diversity, random_strings
 from muster_studies.effort import Effort
 from muster_studies.runs import mission_named
 from muster_studies.tables import Cell, Table

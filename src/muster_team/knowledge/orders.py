@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 from muster.mission.errors import MissionError
 from muster.mission.model import Task
-from muster.mission.task_relations import names_in
+from muster.mission.task_relations import tasks_named_by
 from muster.mission.value_types import shown
 from muster_team.knowledge.facts import in_order
 from muster_team.knowledge.messages import ORDERS, Fact
@@ -79,7 +79,7 @@ class Orders:
         return task in self.rules.tasks or task in self._added
 
     def _needed(self, fact: Fact, task: Task) -> tuple[str, ...]:
-        return names_in(task) if fact.kind == "added" else (task.id, *names_in(task))
+        return tasks_named_by(task) if fact.kind == "added" else (task.id, *tasks_named_by(task))
 
     def _keeps_all_but_its_place(self, task: Task) -> bool:
         added = self._added.get(task.id)

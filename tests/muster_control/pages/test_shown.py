@@ -84,6 +84,8 @@ def test_tasks_that_change_robot_are_told_with_both() -> None:
     b = {"routes": [{"robot": "x", "tasks": ["2", "4"]}, {"robot": "y", "tasks": ["3", "1"]}]}
     assert moved_tasks(a, b) == [("1", "x", "y"), ("4", "left out", "x")]
     assert moved_tasks(a, a) == []
+    teams = [{"routes": [{"robot": robot, "tasks": ["5"]} for robot in team]} for team in ("xz", "yz")]
+    assert moved_tasks(*teams) == [("5", "x, z", "y, z")]
     a = {"routes": [{"robot": "x", "tasks": ["2", "t_12", "12", "t_4"]}]}
     assert [task for task, *_ in moved_tasks(a, {"routes": []})] == ["2", "t_4", "12", "t_12"]
 

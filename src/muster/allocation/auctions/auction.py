@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.auctions.auction_terms import Terms
 from muster.allocation.auctions.auctioneer import Auctioneer, OnRound
-from muster.allocation.auctions.book_keeper import book_of
+from muster.allocation.auctions.book_keeper import held
 from muster.allocation.auctions.coalitions import CoalitionAuction, OnBids, coalition_book
 from muster.allocation.capabilities import FOR_GOOD
 from muster.allocation.stop import Stop
@@ -35,9 +35,7 @@ def allocate(problem: Problem, stop: Stop, seed: int, params: Parameters, start:
             until.cut()
         return auctioneer
 
-    held = hold(stop)
-    stop.improved(*problem.value(held.routes))
-    return Outcome(held.routes, book_of(problem, held.round, held.sales, hold))
+    return held(problem, stop, hold)
 
 
 def _to_coalitions(problem: Problem, stop: Stop, params: Parameters, start: Routes | None) -> Outcome:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 
+from muster.allocation.allocator import Outcome
 from muster.allocation.auctions.auctioneer import Auctioneer, OnRound, Sales
 from muster.allocation.auctions.winners import Sale
 from muster.allocation.stop import Stop
@@ -14,6 +15,13 @@ from muster.model.problem import Problem
 
 Hold = Callable[[Stop, OnRound], object]
 """Holds an auction until it is stopped."""
+
+
+def held(problem: Problem, stop: Stop, hold: Callable[[Stop, OnRound | None], Auctioneer]) -> Outcome:
+    """The plan of an auction that is held until it is time to stop, with its book."""
+    auction = hold(stop, None)
+    stop.improved(*problem.value(auction.routes))
+    return Outcome(auction.routes, book_of(problem, auction.round, auction.sales, hold))
 
 
 def book_of(problem: Problem, rounds: int, sales: Sales, hold: Hold) -> Book:

@@ -131,20 +131,20 @@ def _excluded(problem: Problem, cause: Cause, i: int, j: int, least: float, befo
     return Reason(robot, word, detail)
 
 
-def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:
+def usable_pairs(problem: Problem) -> Bools:
     """(m, n) the pairs of robot and task that may be in an admissible plan, as far as lower bounds tell."""
-    return limits_beside(problem, least_usages(problem) if least is None else least).usable
+    return limits_beside(problem, least_usages(problem)).usable
 
 
 def limits_of(problem: Problem, *, timed: bool = False) -> Limits:
     """Lower bounds of usage, and of times if these matter or are wanted, and the pairs that they leave."""
     least = np.array([least_usage(problem, i) for i in range(len(problem.robots))])
+    return limits_beside(problem, least, timed=timed)
+
+
+def limits_beside(problem: Problem, least: Floats, *, timed: bool = False) -> Limits:
+    """Lower bounds of times, if these matter or are wanted, beside those of usage, and the pairs that they leave."""
     return narrowed(problem, least, _least_times, timed=timed)
-
-
-def limits_beside(problem: Problem, least: Floats) -> Limits:
-    """Lower bounds of times beside those of usage, and the pairs that they leave."""
-    return narrowed(problem, least, _least_times)
 
 
 def least_usages(problem: Problem) -> Floats:

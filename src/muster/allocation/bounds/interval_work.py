@@ -14,8 +14,8 @@ from functools import cached_property
 
 import numpy as np
 
-from muster.allocation.bounds.earliest_times import kth_least
 from muster.allocation.bounds.limits import Limits
+from muster.model.bottleneck import kth_least
 from muster.model.problem import Floats, Indices
 
 _EFFORT = 3e7  # intervals times tasks, and times groups: beyond, fewer intervals are looked at
@@ -102,8 +102,8 @@ class IntervalWork:
     def _latest_alone(self) -> Floats:
         """(n,) when a task begins at the latest, whatever other tasks there are."""
         leaves = -kth_least(-self._leaves_by, self._members)
-        for j in self._rules.for_teams:
-            for count, fits in self._rules.seats(j) if self._rules.has_seats(j) else ():
+        for j, seats in self._rules.parts.seats.items():
+            for count, fits in seats:
                 leaves[j] = min(leaves[j], -np.sort(-self._leaves_by[fits, j])[:count].max(initial=-math.inf))
         closes = [spans[-1][1] if spans else math.inf for spans in self._rules.openings]
         return np.minimum(closes, np.minimum(self._rules.ends_by, leaves) - self._seconds)

@@ -78,9 +78,7 @@ class Limits:
     @cached_property
     def shortest_work(self) -> Floats:
         """(n,) the least seconds of work of any robot or team."""
-        allowed = np.where(self.problem.allowed, self.work, math.inf)
-        found = [_of_team(self.rules, u, allowed) for u in range(len(self.rules.units))]
-        shortest = np.array([found[self.rules.unit[j]][j] for j in range(len(self.problem.tasks))])
+        shortest = self._of_teams(np.where(self.problem.allowed, self.work, math.inf))
         return np.where(np.isfinite(shortest), shortest, 0.0)
 
     @cached_property
@@ -178,6 +176,20 @@ class Limits:
             self._needed[j] = sorted(needed - {j})
         return self._needed[j]
 
+    def with_all_done(self) -> Limits:
+        """These bounds over the plans that do every task: what must follow soon holds back what it follows."""
+        done = [j for j, others in enumerate(self.rules.exclusive) if not others]  # else another may be, in its place
+        times = _with_followers(self, _soon_after(self, done))
+        return replace(self, ready=times.ready, begin=times.begin)
+
+    def earliest(self, pairs: Floats) -> Floats:
+        """(n,) the least of the latest of some times (m, n) of the members of a team for each task; inf: no team."""
+        return self._of_teams(np.where(self.usable, pairs, math.inf))
+
+    def _of_teams(self, pairs: Floats) -> Floats:
+        found = [_of_team(self.rules, u, pairs) for u in range(len(self.rules.units))]
+        return np.array([found[self.rules.unit[j]][j] for j in range(len(self.problem.tasks))])
+
     @cached_property
     def held_back(self) -> dict[int, HeldBack]:
         """The tasks that no plan does as one before them may end only so long before, each with what is too late."""
@@ -253,12 +265,10 @@ class _Times:
 def _with_begins(limits: Limits) -> Limits:
     """Earliest begins with the pairs that are still possible."""
     rules, tasks = limits.rules, range(len(limits.problem.tasks))
-    there = np.where(limits.usable, limits.arrival, math.inf)
-    ready = np.array(limits.ready)
-    for u in range(len(rules.units)):
-        latest = max(_of_team(rules, u, there).values())
-        for j in rules.units[u]:
-            ready[j] = max(ready[j], latest) if math.isfinite(latest) else ready[j]
+    there, ready = limits.earliest(limits.arrival), np.array(limits.ready)
+    for unit in rules.units:
+        if math.isfinite(latest := there[unit].max()):
+            ready[unit] = np.maximum(ready[unit], latest)
     times = _Times(ready, np.array([_begin(rules, rules.unit[j], ready) for j in tasks]), list(limits.awaited))
     for _ in range(len(tasks) + 1):
         if not _sweep(limits, times):
@@ -293,11 +303,21 @@ def _too_far(limits: Limits, j: int) -> HeldBack | None:
 def _held_back(limits: Limits, j: int) -> HeldBack | None:
     """Which task before a task would be too late in every plan that does both, as it may not end too long before."""
     tasks = [j, *limits.must_also(j)]
-    gaps = [(k, b, within) for k in tasks for b, _, within in limits.rules.gaps(k) if math.isfinite(within)]
-    if not gaps:
-        return None
+    gaps = _soon_after(limits, tasks)
+    times = _with_followers(limits, gaps)
+    late = next((late for k in tasks if k != j and gaps and (late := _late(limits, times, k))), "")
+    return HeldBack(late, limits.rules.given_by("gaps", gaps[0][1], gaps[0][0])) if late else None
+
+
+def _soon_after(limits: Limits, tasks: Sequence[int]) -> list[tuple[int, int, float]]:
+    """Which of some tasks follow another in at most so much time, and that."""
+    return [(k, b, within) for k in tasks for b, _, within in limits.rules.gaps(k) if math.isfinite(within)]
+
+
+def _with_followers(limits: Limits, gaps: Sequence[tuple[int, int, float]]) -> _Times:
+    """When tasks begin as some of them, all done, may follow others only so soon."""
     times = _Times(limits.ready.copy(), limits.begin.copy(), list(limits.awaited))
-    for _ in range(len(tasks) + 1):
+    for _ in range(len(limits.problem.tasks) + 1 if gaps else 0):
         waiting = [
             times.wait(limits.rules, b, times.begin[k] - within - limits.longest_work[b], None)
             for k, b, within in gaps
@@ -305,8 +325,7 @@ def _held_back(limits: Limits, j: int) -> HeldBack | None:
         ]
         if not any(waiting) and not _sweep(limits, times):
             break
-    late = next((late for k in tasks if k != j and (late := _late(limits, times, k))), "")
-    return HeldBack(late, limits.rules.given_by("gaps", gaps[0][1], gaps[0][0])) if late else None
+    return times
 
 
 def _late(limits: Limits, times: _Times, k: int) -> str:
@@ -364,6 +383,4 @@ def _until_able(rules: PlanModel, j: int, values: Floats) -> float:
     for needed, able in rules.sums(j).values():
         enough = np.flatnonzero(np.cumsum(able[order]) >= needed * (1 - ROUNDING))
         latest = max(latest, float(values[order[enough[0]]])) if len(enough) else math.inf
-        if math.isinf(latest):
-            break
     return latest

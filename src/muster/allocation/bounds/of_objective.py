@@ -17,12 +17,14 @@ import numpy as np
 
 from muster.allocation.bounds.arrival_bounds import least_arrivals
 from muster.allocation.bounds.arrival_paths import least_arrivals_on_paths
-from muster.allocation.bounds.earliest_times import EarliestTimes, in_time, kth_least, opened
-from muster.allocation.bounds.feasibility import least_usages, usable_pairs
+from muster.allocation.bounds.easier_problems import in_time, opened
+from muster.allocation.bounds.feasibility import least_usages, limits_beside
+from muster.allocation.bounds.limits import Limits
 from muster.allocation.bounds.spanning import Ways, never, route_bounds
 from muster.allocation.bounds.team_copies import with_copies
 from muster.allocation.bounds.weighed_shares import far_shares, weighed_shares
 from muster.mission.errors import MusterError
+from muster.model.bottleneck import kth_least
 from muster.model.problem import Bools, Floats, Problem
 from muster.model.rules.rule import ROUNDING
 
@@ -105,15 +107,16 @@ def _best_bound(problem: Problem, due: Callable[[], bool]) -> Bound:
         bounds = [_best_bound(problem.part(range(len(problem.robots)), tasks), due) for tasks in choices]
         return min(bounds, key=lambda bound: bound.value)
     least = least_usages(problem)
-    usable = usable_pairs(problem, least)
+    limits = limits_beside(problem, least, timed=problem.objective in ("makespan", "lateness"))
+    usable = limits.usable
     if not _of_each(problem, np.asarray(usable.any(axis=0), np.float64), best=np.max).all():
         return Bound(math.inf, (_NOBODY,))
     if problem.objective == "average":
         return _average(problem, usable, due)
     if problem.objective == "makespan":
-        return _makespan(problem, usable, due)
+        return _makespan(problem, limits.with_all_done(), due)
     if problem.objective == "lateness":
-        return _lateness(problem, usable)
+        return _lateness(limits.with_all_done())
     return _usage(problem, usable, least, due)
 
 
@@ -243,19 +246,26 @@ def _average(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:
     return Bound(named[best], (best,))
 
 
-def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:
+def earliest_ends(limits: Limits) -> Floats:
+    """(n,) when each task ends at the earliest; inf: too late."""
+    ends = limits.earliest(limits.pair_end)
+    return np.where(ends > limits.rules.ends_by * (1 + ROUNDING), math.inf, ends)
+
+
+def _makespan(problem: Problem, limits: Limits, due: Callable[[], bool]) -> Bound:
     """Bound the time at which the last task ends.
 
-    Theorem. (1) Critical path: no task begins earlier than `EarliestTimes` tells, by its robots, its prerequisites and
-    its openings. (2) The robots of k routes are on their way or at work for no longer than from when they are available
+    Theorem. (1) Critical path: no task begins earlier than `Limits` tell, by its robots, its prerequisites and its
+    openings. (2) The robots of k routes are on their way or at work for no longer than from when they are available
     to the last end: k times that is at least the least total time of k routes, the tasks of teams counted for each
     member, plus the k least times of availability. The bound is the least over k, and at least (1). Routes are open,
     unless the way to the robots' ends counts. (3) The last end is not before what `weighed_shares` and `far_shares`
     tell.
     """
-    timed, earliest = in_time(problem), EarliestTimes.of(problem, usable)
+    timed, usable, ends = in_time(problem), limits.usable, earliest_ends(limits)
     with_return = problem.mission.rules.makespan_includes_return
-    critical = float(_of_each(problem, earliest.homes if with_return else earliest.ends).max())
+    ends = np.maximum(ends, limits.earliest(limits.over)) if with_return else ends
+    critical = float(_of_each(problem, ends).max())
     copied = with_copies(timed if with_return else opened(timed), usable)
     if copied is None or math.isinf(critical):
         return Bound(critical, (_CRITICAL,))
@@ -282,9 +292,9 @@ def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound
     return Bound(float(values[k]), (max(named, key=lambda name: named[name]),))
 
 
-def _lateness(problem: Problem, usable: Bools) -> Bound:
-    """Bound the weighted sum of what tasks end after they are due: none ends earlier than `EarliestTimes` tells."""
-    ends = EarliestTimes.of(problem, usable).ends
+def _lateness(limits: Limits) -> Bound:
+    """Bound the weighted sum of what tasks end after they are due: none ends earlier than `Limits` tell."""
+    problem, ends = limits.problem, earliest_ends(limits)
     done = np.isfinite(ends)
     priority = np.array([task.priority for task in problem.tasks])
     late = priority * np.maximum(0.0, np.where(done, ends, 0.0) - problem.model.due)

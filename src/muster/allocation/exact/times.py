@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from ortools.sat.python import cp_model
 
-from muster.allocation.bounds.earliest_times import in_time
+from muster.allocation.bounds.easier_problems import in_time
 from muster.allocation.exact.circuits import Circuits, Leg
 from muster.allocation.exact.costs import Costs
 from muster.allocation.exact.goods import most_seconds

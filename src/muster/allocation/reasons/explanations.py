@@ -122,7 +122,9 @@ def without_bid(problem: Problem, book: Book, award: Award) -> tuple[Reason, ...
         elif all_named and robot.id not in bidders and math.isinf(least_usage(problem, i)[j]):
             reasons.append(Reason(robot.id, "unreachable", problem.no_way_to(i, j)))
         elif all_named and robot.id not in bidders:
-            reasons.append(Reason(robot.id, "capacity", "too little was left of it"))
+            word = problem.model.word_of("capacity")
+            why = (word, "too little was left of it") if word else ("not-chosen", "it made no bid")
+            reasons.append(Reason(robot.id, *why))
     return tuple(reasons)
 
 

@@ -225,7 +225,7 @@ class TimedPlaces(TimedTeams):
             if patient and self._admissible(replace(free, tasks=patient, known=free.measured), places):
                 return Outcome(word=rule.word, detail=rule.broken_at(Tried(self.problem, i, j, [])))
         detail = "at every place in its route tasks would wait for each other in a circle"
-        return Outcome(word="prerequisite", detail=detail)
+        return Outcome(word=self._word_of("gaps", *_TIES, "taken_on_by"), detail=detail)
 
     # --- places ------------------------------------------------------------------------------------------------------
 

@@ -22,10 +22,8 @@ class TimedTeams(InPlan):
     is_timed = True
 
     def __init__(self, problem: Problem, routes: Sequence[Sequence[int]]) -> None:
+        super().__init__(problem, routes)
         self.problem: Problem = problem
-        self.routes = [list(route) for route in routes]
-        self.inspection = core.Inspection(problem.core, self.routes)
-        self.done = {j for route in routes for j in route}
 
     def members(self, j: int) -> Sequence[int]:
         return [i for i, route in enumerate(self.routes) if j in route]

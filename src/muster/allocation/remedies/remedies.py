@@ -10,12 +10,11 @@ from muster import core
 from muster.allocation.allocator import Routes
 from muster.allocation.bounds.feasibility import impossible
 from muster.allocation.bounds.usage_bounds import FEW, UsageBounds
-from muster.allocation.remedies.changed_problem import as_they_are, changed, with_capacity
-from muster.allocation.remedies.remedy import Before, Remedy
+from muster.allocation.remedies.changed_problem import changed
+from muster.allocation.remedies.remedy import Before, Remedy, as_they_are
 from muster.allocation.remedies.timed_remedies import timed_remedy
 from muster.allocation.search.witness_plans import Judge, attempt, bare_plan
 from muster.model.problem import Problem
-from muster.model.rules.capacity import CapacityChange
 from muster.model.rules.rule import ROUNDING
 
 _NARROWINGS = 6  # of what is known of the least capacity: each halves what is not known
@@ -87,10 +86,10 @@ def _needs_as_is(problem: Problem, routes: Routes, j: int) -> Iterator[tuple[int
     inspection = core.Inspection(problem.core, _without(routes, j))
     for i, first in enumerate(as_they_are(problem, routes, j, range(len(problem.robots)))):
         place = None if first.before else _cheapest_place(inspection, i, j)
-        room = None if place is None else _work_capacity(problem, place[1])
+        room = None if place is None else problem.capacity_for(place[1])
         now = first.capacity.now
         enough = room if room is None or now is None else max(room, now)
-        yield i, replace(first, capacity=CapacityChange(now=now, as_is=room, enough=enough))
+        yield i, replace(first, capacity=replace(first.capacity, as_is=room, enough=enough))
 
 
 def _cheapest_place(inspection: core.Inspection, i: int, j: int) -> tuple[int, float] | None:
@@ -102,11 +101,6 @@ def _cheapest_place(inspection: core.Inspection, i: int, j: int) -> tuple[int, f
 def _put(rest: Routes, i: int, j: int, at: int) -> Routes:
     """Routes with task j at a place of the route of robot i."""
     return [[*route[:at], j, *route[at:]] if k == i else list(route) for k, route in enumerate(rest)]
-
-
-def _work_capacity(problem: Problem, usage: float) -> float:
-    """The work capacity of which this much is usable."""
-    return usage / (1.0 - problem.mission.rules.capacity_reserve)
 
 
 def _without(routes: Routes, j: int) -> Routes:
@@ -149,9 +143,9 @@ def _searched_for(problem: Problem, routes: Routes, i: int, j: int, remedy: Reme
     if remedy.before:
         never = {item.task for item in impossible(base)}
         remedy = replace(remedy, before=tuple(Before(name.task, name.task not in never) for name in remedy.before))
-    only = replace(base.tasks[j], only_robots=(remedy.robot,))
+    only = base.tasks[j].only_for(remedy.robot)
     sole = replace(base, tasks=tuple(only if k == j else task for k, task in enumerate(base.tasks)))
-    bounds = UsageBounds(with_capacity(sole, i, None))
+    bounds = UsageBounds(sole.with_capacities({i: None}))
     if not bounds.possible[i, j]:
         return _not_found(replace(remedy, unreachable=True, impossible=True))
     if as_is is not None and (now is None or as_is <= now * (1 + ROUNDING)):
@@ -159,7 +153,7 @@ def _searched_for(problem: Problem, routes: Routes, i: int, j: int, remedy: Reme
         if fitted.enough:
             return fitted
     needed = problem.closed([j, *(k for route in rest for k in route)])
-    least = _work_capacity(problem, least_beside(bounds, i, j, needed))
+    least = problem.capacity_for(least_beside(bounds, i, j, needed))
     if math.isinf(least):
         return _not_found(replace(remedy, impossible=True))
     remedy = replace(remedy, capacity=replace(remedy.capacity, at_least=None if now is None else least))
@@ -167,7 +161,7 @@ def _searched_for(problem: Problem, routes: Routes, i: int, j: int, remedy: Reme
     if found is None:
         return _not_found(remedy)
     if now is not None:
-        used = _work_capacity(problem, core.Inspection(sole.core, found).usages[i])
+        used = problem.capacity_for(core.Inspection(sole.core, found).usages[i])
         remedy = replace(remedy, capacity=replace(remedy.capacity, enough=max(used, now)))
     return _judged(changed(problem, remedy, i, j), found, remedy, judge)
 
@@ -184,21 +178,21 @@ def _narrowed(sole: Problem, rest: Routes, needed: list[int], i: int, j: int, re
         return None
     low = tried = max(low, now)
     for _ in range(_NARROWINGS):
-        used = _work_capacity(sole, core.Inspection(sole.core, best).usages[i])
+        used = sole.capacity_for(core.Inspection(sole.core, best).usages[i])
         if used - low <= _NEAR_ENOUGH * used:
             break
         found = _rearranged(sole, rest, needed, i, tried)
         if found is None:
             low = tried
         else:
-            best, used = found, _work_capacity(sole, core.Inspection(sole.core, found).usages[i])
+            best, used = found, sole.capacity_for(core.Inspection(sole.core, found).usages[i])
         tried = (low + used) / 2
     return best
 
 
 def _with_task(sole: Problem, rest: Routes, i: int, j: int) -> Routes | None:
     """The routes with task j in that of robot i, if they are admissible with unlimited capacity of the robot."""
-    problem = with_capacity(sole, i, None)
+    problem = sole.with_capacities({i: None})
     place = _cheapest_place(core.Inspection(problem.core, rest), i, j)
     routes = None if place is None else _put(rest, i, j, place[0])
     return routes if routes is not None and _admissible(problem, routes) else None
@@ -209,7 +203,7 @@ def _rearranged(sole: Problem, rest: Routes | None, needed: list[int], i: int, c
 
     The search begins with the rest of the plan, if that is given and admissible.
     """
-    problem = with_capacity(sole, i, capacity)
+    problem = sole.with_capacities({i: capacity})
     start = rest if rest is not None and _admissible(problem, rest) else None
     routes = attempt(problem, needed, start=start)
     return routes if not set(needed).difference(*routes) else None

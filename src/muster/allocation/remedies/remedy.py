@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from muster.allocation.allocator import Routes, scheduled
+from muster.allocation.bounds.feasibility import impossible
 from muster.mission.plan import Plan, Route
 from muster.model.problem import Problem
 from muster.model.rules import Change, all_rules
@@ -81,6 +82,24 @@ class Remedy:
             "routes": [asdict(route) for route in self.routes],
             "kinds": self.kinds,
         }
+
+
+def as_they_are(problem: Problem, routes: Routes, j: int, robots: Iterable[int]) -> Iterator[Remedy]:
+    """For each robot what stands between it and the task by themselves, and the prerequisites that are left out."""
+    done, own, task = {k for route in routes for k in route}, problem.with_partner(j), problem.tasks[j]
+    awaited = problem.closed([before for k in own for before in problem.prerequisites[k]])
+    missing = [problem.tasks[k].id for k in awaited if k not in done and k not in own]
+    never = {item.task for item in impossible(problem)} if missing else set()
+    for i in robots:
+        robot = problem.robots[i]
+        changes = {rule.word: rule.change(problem, robot, task) for rule in problem.rules if rule.key is not None}
+        yield Remedy(
+            robot=robot.id,
+            changes={word: change for word, change in changes.items() if change is not None},
+            before=tuple(Before(name, name not in never) for name in missing),
+            unable=problem.action_refusal(i, j) or "",
+            capacity=CapacityChange.of(problem, i),
+        )
 
 
 def more_calls(problem: Problem, routes: Routes, plan: Plan, i: int) -> tuple[str, ...]:

@@ -13,12 +13,11 @@ from muster import core
 from muster.allocation.allocator import Routes
 from muster.allocation.bounds.feasibility import limits_of
 from muster.allocation.reasons.timed_places import Place, TimedPlaces
-from muster.allocation.remedies.changed_problem import as_they_are, changed, with_capacity
-from muster.allocation.remedies.remedy import Remedy, more_calls
+from muster.allocation.remedies.changed_problem import changed
+from muster.allocation.remedies.remedy import Remedy, as_they_are, more_calls
 from muster.allocation.search.witness_plans import Judge, attempt, bare_plan
 from muster.model.problem import Problem
 from muster.model.rules import Change
-from muster.model.rules.capacity import CapacityChange
 from muster.model.rules.rule import Found, Times, route_over, stop_of
 
 
@@ -72,7 +71,7 @@ def _lifted_and_tried(
     lifted = replace(remedy, changes={**remedy.changes, **limits})
     opened = changed(problem, lifted, i, j)
     at, of = opened.robot_index[remedy.robot], opened.task_index[problem.tasks[j].id]
-    opened = with_capacity(opened, at, None)
+    opened = opened.with_capacities({at: None})
     routes = _as_named(problem, opened, rest)
     found = _searched(opened, routes, at, of) if searched else _placed(problem, opened, routes, i, limits, at, of)
     if found is None:
@@ -147,10 +146,10 @@ def _needed(
     found = replace(_found(opened, routes, inspection, at, of), least=least)
     narrowed = {word: change.narrowed(found) for word, change in lifted.changes.items()}
     now = lifted.capacity.now
-    used = found.usage / (1.0 - problem.mission.rules.capacity_reserve)
+    used = problem.capacity_for(found.usage)
     enough = None if now is None else max(used, now)
     return replace(
         lifted,
         changes={word: change for word, change in narrowed.items() if change is not None},
-        capacity=CapacityChange(now=now, as_is=used if as_is else None, enough=enough),
+        capacity=replace(lifted.capacity, as_is=used if as_is else None, enough=enough),
     )

@@ -94,7 +94,7 @@ void bind_problem(nb::module_& m) {
              const std::vector<std::vector<int>>& exclusive, const std::vector<std::vector<int>>& same_crew,
              const std::vector<std::vector<int>>& apart, Indices least_stops, Numbers acceleration, Numbers climb,
              Numbers turn, bool over_map, bool makespan_includes_return, int meters, Numbers load, Numbers pending,
-             Indices pickup, Numbers most_aboard, Numbers load_at_start, Numbers pending_at_start, Numbers energy,
+             Indices pickup, Numbers most_aboard, Numbers aboard_at_start, Numbers pending_at_start, Numbers energy,
              Numbers energy_at_start, const Stations& stations, Flags calls, Numbers waiting, Flags waits) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
@@ -148,7 +148,7 @@ void bind_problem(nb::module_& m) {
             data.pending = numbers(pending);
             data.pickup.assign(pickup.data(), pickup.data() + pickup.size());
             data.most_aboard = numbers(most_aboard);
-            data.load_at_start = numbers(load_at_start);
+            data.aboard_at_start = numbers(aboard_at_start);
             data.pending_at_start = numbers(pending_at_start);
             data.energy = numbers(energy);
             data.energy_at_start = numbers(energy_at_start);
@@ -164,7 +164,7 @@ void bind_problem(nb::module_& m) {
           "openings"_a, "ends_by"_a, "due"_a, "over_by"_a, "lasts_most"_a, "spans"_a, "gap_least"_a, "gap_most"_a,
           "unit"_a, "parts"_a, "abilities"_a, "needs"_a, "exclusive"_a, "same_crew"_a, "apart"_a, "least_stops"_a,
           "acceleration"_a, "climb"_a, "turn"_a, "over_map"_a, "makespan_includes_return"_a, "meters"_a, "load"_a,
-          "pending"_a, "pickup"_a, "most_aboard"_a, "load_at_start"_a, "pending_at_start"_a, "energy"_a,
+          "pending"_a, "pickup"_a, "most_aboard"_a, "aboard_at_start"_a, "pending_at_start"_a, "energy"_a,
           "energy_at_start"_a, "stations"_a, "calls"_a, "waiting"_a, "waits"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
@@ -184,7 +184,7 @@ void bind_problem(nb::module_& m) {
           "the straight way has bends; `load` and `pending` (n, meters) what a task adds to the load, and how "
           "much "
           "of that another delivers, `pickup` (n,) the task that takes on what a task delivers, -1 for none, "
-          "`most_aboard` and `load_at_start` (m, meters); `energy` and `energy_at_start` (m,) in the unit of "
+          "`most_aboard` and `aboard_at_start` (m, meters); `energy` and `energy_at_start` (m,) in the unit of "
           "usage, the reserve taken off, inf without a limit of energy; `stations` (refill by second, swap_s, unloads, "
           "partial, "
           "slots), whose places stand after the ends of robots; `waiting` (n + 2m, n + 2m) seconds for others between "

@@ -129,7 +129,7 @@ bool Problem::alike(int robot, int other) const {
   const auto same = [&](const auto& values) { return values.empty() || values[robot] == values[other]; };
   const auto same_loads = [&] {
     for (int c = 0; c < data_.meters; ++c) {
-      if (most_aboard(robot, c) != most_aboard(other, c) || load_at_start(robot, c) != load_at_start(other, c)) {
+      if (most_aboard(robot, c) != most_aboard(other, c) || aboard_at_start(robot, c) != aboard_at_start(other, c)) {
         return false;
       }
     }
@@ -181,7 +181,7 @@ void Problem::check_goods() const {
   const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
   const auto meters = static_cast<std::size_t>(data_.meters);
   require(data_.load.size() == tasks * meters && data_.pending.size() == tasks * meters &&
-              data_.most_aboard.size() == robots * meters && data_.load_at_start.size() == robots * meters &&
+              data_.most_aboard.size() == robots * meters && data_.aboard_at_start.size() == robots * meters &&
               (data_.pending_at_start.empty() || data_.pending_at_start.size() == robots * meters),
           "loads need a value for each meter");
   require(data_.pickup.empty() ||

@@ -93,7 +93,7 @@ struct ProblemData {
   int meters = 0;
   std::vector<double> load, pending;
   std::vector<int> pickup;
-  std::vector<double> most_aboard, load_at_start;
+  std::vector<double> most_aboard, aboard_at_start;
   std::vector<double> pending_at_start;  // what of the load at first tasks deliver; empty: nothing
   // Energy: above what a energy must keep; inf: without a limit of energy. By robot.
   std::vector<double> energy, energy_at_start;
@@ -247,7 +247,7 @@ class Problem {
   double load(int task, int meter) const { return data_.load[at(task, meter)]; }
   double pending(int task, int meter) const { return data_.pending[at(task, meter)]; }
   double most_aboard(int robot, int meter) const { return data_.most_aboard[at(robot, meter)]; }
-  double load_at_start(int robot, int meter) const { return data_.load_at_start[at(robot, meter)]; }
+  double aboard_at_start(int robot, int meter) const { return data_.aboard_at_start[at(robot, meter)]; }
   double pending_at_start(int robot, int meter) const {
     return data_.pending_at_start.empty() ? 0.0 : data_.pending_at_start[at(robot, meter)];
   }

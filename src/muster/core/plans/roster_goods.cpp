@@ -20,7 +20,7 @@ bool Roster::measure_loads(int robot) {
   if (meters == 0) return true;
   auto &loads = loads_[robot], &highest = highest_[robot], &lowest = lowest_[robot];
   loads.resize(static_cast<std::size_t>(size + 1) * meters);
-  for (int c = 0; c < meters; ++c) loads[index(0, c)] = problem_.load_at_start(robot, c);
+  for (int c = 0; c < meters; ++c) loads[index(0, c)] = problem_.aboard_at_start(robot, c);
   for (int at = 1; at <= size; ++at) {
     const int task = timeline_.stop(robot, at).place;
     for (int c = 0; c < meters; ++c) loads[index(at, c)] = loads[index(at - 1, c)] + problem_.load(task, c);

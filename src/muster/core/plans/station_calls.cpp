@@ -146,7 +146,7 @@ void StationCalls::begin(int robot, Labels& labels) {
   labels.spare.push_back(kNever);
   if (!unloads_) return;
   for (int c = 0; c < problem_.meters(); ++c) {
-    labels.loads.push_back(problem_.load_at_start(robot, c));
+    labels.loads.push_back(problem_.aboard_at_start(robot, c));
     labels.pending.push_back(problem_.pending_at_start(robot, c));
   }
 }

@@ -163,7 +163,7 @@ def _split_faults(at: Path, task: Task, mission: MissionData, ids: set[str]) -> 
             yield Fault((*at, "id"), shown(task.id), f"an id whose parts have ids of their own: there is a {name}")
     action = task.action
     if action.width_m is None and action.fov_deg is None:
-        robots = [r for r in mission.robots if task.only_robots is None or r.id in task.only_robots]
+        robots = [r for r in mission.robots if task.is_open_to(r.id)]
         cameras = {robot.camera: robot.id for robot in reversed(robots) if robot.camera is not None}
         if len(cameras) > 1:
             names = " and ".join(list(cameras.values())[::-1][:2])

@@ -3,35 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from operator import attrgetter
 
 from muster.mission.mission_data import MissionData
-from muster.mission.mission_parts import new_tasks, unknown_id, work_that
-from muster.mission.task_relations import tied_by
+from muster.mission.task_relations import tied_by, wrong_names
 from muster.mission.tasks import Task
-from muster.mission.value_types import Fault, Path, shown
+from muster.mission.value_types import Fault
 
 
 def order_faults(mission: MissionData) -> Iterator[Fault]:
     """What is wrong with the prerequisites of a mission."""
-    yield from _unknown_or_repeated(mission)
+    yield from wrong_names(mission, ("prerequisites",), once="each prerequisite once", itself=True)
     yield from _cycles(mission.tasks)
-
-
-def _unknown_or_repeated(mission: MissionData) -> Iterator[Fault]:
-    ids = [t.id for t in mission.tasks]
-    with_new = [*ids, *(t.id for _, t in new_tasks(mission))]
-    own, all_of_them = set(ids), set(with_new)
-    for path, task in work_that(attrgetter("prerequisites"), mission):
-        known, among = (ids, own) if path[0] == "tasks" else (with_new, all_of_them)
-        seen: set[str] = set()
-        for p, name in enumerate(task.prerequisites):
-            at: Path = (*path, "prerequisites", p)
-            if name not in among:
-                yield unknown_id(at, name, known, "task")
-            elif name in seen:
-                yield Fault(at, shown(name), "each prerequisite once")
-            seen.add(name)
 
 
 def _cycles(tasks: Sequence[Task]) -> Iterator[Fault]:

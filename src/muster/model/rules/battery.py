@@ -11,7 +11,7 @@ from muster.mission.model import Robot
 from muster.mission.stations import Battery as BatteryNow
 from muster.model.energy import Energy
 from muster.model.parts import Parts
-from muster.model.rules.rule import Bools, Change, Found, Limits, Outlook, Question, Rule, Tried, first_robot
+from muster.model.rules.rule import Bools, Change, Found, Limits, Outlook, Question, Rule, Tried
 
 
 @dataclass(frozen=True)
@@ -51,11 +51,6 @@ class Battery(Rule):
     kept_by_calls = True
     key = "battery"
     resource = ("battery", "battery")
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        if not problem.holds(self.word):
-            return {"battery": None}
-        return {"battery": first_robot(problem, "battery", lambda i: problem.robots[i].battery)}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         for i, robot in enumerate(problem.robots):

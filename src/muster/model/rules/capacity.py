@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
+from muster.mission.model import Robot
 from muster.model.parts import Parts
 from muster.model.rules.rule import ROUNDING, Bools, InPlan, Limits, Outlook, Question, Rule, Tried
 
@@ -22,10 +23,9 @@ class Capacity(Rule):
     resource = ("capacity", "work capacity")
 
     def compile(self, problem: Question, parts: Parts) -> None:
-        usable = 1.0 - problem.mission.rules.capacity_reserve
         for i, robot in enumerate(problem.robots):
             if robot.work_capacity is not None:
-                parts.uses(i, usable * robot.work_capacity)
+                parts.uses(i, problem.mission.rules.usable_share * robot.work_capacity)
 
     def possible(self, limits: Limits) -> Bools:
         return np.asarray(limits.usage <= limits.rules.capacity[:, None] * (1 + ROUNDING))
@@ -69,6 +69,15 @@ class CapacityChange:
     as_is: float | None = None
     at_least: float | None = None
     enough: float | None = None
+
+    @classmethod
+    def of(cls, problem: Question, i: int) -> CapacityChange:
+        """No change of robot i."""
+        return cls(now=None if math.isinf(problem.model.capacity[i]) else problem.robots[i].work_capacity)
+
+    def robot(self, robot: Robot) -> Robot:
+        """The robot with the capacity that is enough."""
+        return robot if self.now is None or self.enough is None else replace(robot, work_capacity=self.enough)
 
     @property
     def grows(self) -> bool:

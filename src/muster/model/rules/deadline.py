@@ -12,7 +12,7 @@ import numpy as np
 from muster.mission.model import Robot, Task
 from muster.model.parts import Parts
 from muster.model.rules.latest import Later, Latest
-from muster.model.rules.rule import ROUNDING, Bools, Limits, Outlook, Question, Tried, first_task
+from muster.model.rules.rule import ROUNDING, Bools, Limits, Outlook, Question, Tried
 from muster.model.rules.times import known_least, longer, moments, span
 
 
@@ -47,10 +47,6 @@ class Deadline(Latest):
     limits = ("ends_by", False)
     lifts = LaterDeadline
     resource = ("time", "time before the last deadline")
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        deadline = problem.model.ends_by
-        return {"deadline": first_task(problem, "deadline_s", lambda j: np.isfinite(deadline[j]))}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         for j, task in enumerate(problem.tasks):

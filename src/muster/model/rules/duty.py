@@ -20,7 +20,6 @@ from muster.model.rules.rule import (
     Question,
     Rule,
     Tried,
-    first_robot,
 )
 from muster.model.rules.times import spans
 
@@ -48,10 +47,6 @@ class Duty(Rule):
     asked: ClassVar[Mapping[str, str]] = {"lasts_most": "duty"}
     lifted_late = True
     key = "duty"
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        longest = problem.model.lasts_most
-        return {"duty": first_robot(problem, "longest_duty_s", lambda i: np.isfinite(longest[i]))}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         for i, robot in enumerate(problem.robots):

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from muster.mission.task_relations import IN_ITS_PLACE, alternatives_of
 from muster.model.parts import Parts
-from muster.model.rules.rule import InPlan, Question, Rule, first_task
+from muster.model.rules.rule import InPlan, Question, Rule
 
 
 class EitherOr(Rule):
@@ -17,9 +17,6 @@ class EitherOr(Rule):
     word: ClassVar[str] = "either-or"
     about_one = False
     asked: ClassVar[Mapping[str, str]] = {"exclusive": "either-or"}
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        return {"either-or": first_task(problem, "either_or", lambda j: problem.model.exclusive[j])}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         for names in alternatives_of(problem.tasks):

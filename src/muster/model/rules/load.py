@@ -11,7 +11,7 @@ import numpy as np
 from muster.mission.goods import by_commodity, shown_amounts
 from muster.mission.model import Robot, Task
 from muster.model.parts import Meter, Parts
-from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Rule, Tried, first_robot, first_task
+from muster.model.rules.rule import Bools, Change, Limits, Outlook, Question, Rule, Tried
 
 Amounts = Mapping[str, float]
 
@@ -46,12 +46,6 @@ class Load(Rule):
     lifted_late = True
     of_a_route = True
     kept_by_calls = True
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        if not self._holds(problem):
-            return {"load": None}
-        loads = first_task(problem, "load", lambda j: by_commodity(problem.tasks[j].load))
-        return {"load": loads or first_robot(problem, "load_at_start", lambda i: _at_start(problem.robots[i]))}
 
     def _holds(self, problem: Question) -> bool:
         return problem.holds(self.word)

@@ -11,7 +11,7 @@ import numpy as np
 from muster.mission.model import Mission, Robot
 from muster.mission.texts.counting import counted
 from muster.model.parts import Parts
-from muster.model.rules.rule import Bools, Change, Found, Limits, Outlook, Question, Rule, Tried, first_robot, listed
+from muster.model.rules.rule import Bools, Change, Found, Limits, Outlook, Question, Rule, Tried, listed
 
 
 @dataclass(frozen=True)
@@ -50,9 +50,6 @@ class MinTasks(Rule):
     of_a_route = True
     of_the_team = True
     key = "min_tasks"
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        return {"min-tasks": first_robot(problem, "min_tasks", lambda i: int(problem.model.least_stops[i]) > 1)}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         if problem.past is not None:

@@ -18,7 +18,6 @@ from muster.model.rules.rule import (
     Question,
     Rule,
     Tried,
-    first_task,
     listed,
 )
 
@@ -28,11 +27,7 @@ class Prerequisite(Rule):
 
     word: ClassVar[str] = "prerequisite"
     asked: ClassVar[Mapping[str, str]] = {"bounded": "lag"}
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        lags = problem.model.gaps
-        lagged = [any(after or np.isfinite(within) for _, after, within in lags(j)) for j in range(len(problem.tasks))]
-        return {"lag": first_task(problem, "prerequisites with after_s or within_s", lambda j: lagged[j])}
+    asked_by: ClassVar[Mapping[str, str]] = {"bounded": "lags"}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         for j, task in enumerate(problem.tasks):

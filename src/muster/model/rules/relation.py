@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -12,7 +12,7 @@ from muster.mission.model import Robot, Task
 from muster.mission.task_relations import RELATIONS
 from muster.model.bottleneck import on_some_matching
 from muster.model.parts import Parts
-from muster.model.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, first_task, listed
+from muster.model.rules.rule import Bools, Change, InPlan, Limits, Outlook, Question, Rule, listed
 
 _RELATIONS = ("same_robot_as", "other_robot_than", "starts_with")
 
@@ -51,27 +51,19 @@ class Relation(Rule):
     word: ClassVar[str] = "relation"
     about_one = False
     asked: ClassVar[Mapping[str, str]] = {"same_crew": "relation", "apart": "relation", "together": "starts-with"}
+    asked_by: ClassVar[Mapping[str, str]] = {
+        "same_crew": "same_robot_as",
+        "apart": "other_robot_than",
+        "together": "starts_with",
+    }
     key = "relation"
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        rules = problem.model
-        same = _stated(problem, "same_robot_as", lambda j: rules.same_crew[j])
-        whole = len(rules.units) == len(problem.tasks)
-        return {
-            "relation": same or _stated(problem, "other_robot_than", lambda j: rules.apart[j]),
-            "starts-with": None if whole else first_task(problem, "starts_with", rules.beginning_with),
-        }
 
     def compile(self, problem: Question, parts: Parts) -> None:
         """Of a part of a mission not all tasks are there, and then nothing is tied."""
-        ties = {
-            "same_robot_as": parts.by_one_crew,
-            "other_robot_than": parts.by_others,
-            "starts_with": parts.begin_together,
-        }
+        ties = {"same_crew": parts.by_one_crew, "apart": parts.by_others, "together": parts.begin_together}
         for j, task in enumerate(problem.tasks):
-            for relation, tie in ties.items():
-                for name in getattr(task, relation):
+            for part, tie in ties.items():
+                for name in getattr(task, self.asked_by[part]):
                     if name in problem.task_index:
                         tie(j, problem.task_index[name])
 
@@ -145,12 +137,6 @@ class Relation(Rule):
         if k in limits.rules.apart[j] and int(others.sum()) == 1:
             return ~others
         return np.ones_like(others)
-
-
-def _stated(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
-    """The first task in a relation; where one is there, the first that states it, as the rules are symmetric."""
-    stated = first_task(problem, key, lambda j: has(j) and getattr(problem.tasks[j], key))
-    return stated or first_task(problem, key, has)
 
 
 def _different(limits: Limits, unit: list[int]) -> dict[int, Bools]:

@@ -20,7 +20,6 @@ from muster.model.plan_model import PlanModel
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 Routes = list[list[int]]
-Scores = Mapping[str, Mapping[str, float]]
 
 ROUNDING = 2e-9
 """By how much a usage may be above a capacity, relative; a little more than the judge allows."""
@@ -60,8 +59,6 @@ class Question(Protocol):
     def amounts(self, of: Callable[[Task], float]) -> Floats: ...
 
     def end(self, i: int) -> int: ...
-
-    def travel_seconds(self, i: int, places: Sequence[int], to: Sequence[int]) -> Floats: ...
 
     def holds(self, rule: str) -> bool: ...
 
@@ -107,8 +104,6 @@ class Limits(Protocol):
     def alone(self) -> Bools: ...
     @property
     def arrival(self) -> Floats: ...
-    @property
-    def home(self) -> Floats: ...
     @property
     def under_way(self) -> Floats: ...
     @property
@@ -227,13 +222,9 @@ class Change:
         """The task as it would have to be for the robot."""
         return task
 
-    def suitability(self, table: Scores) -> Scores:
-        """The suitability table as it would have to be."""
-        return table
-
-    def more_robots(self) -> tuple[Robot, ...]:
-        """The robots that there would have to be beside those of the mission."""
-        return ()
+    def mission(self, mission: Mission) -> Mission:
+        """The mission as it would have to be, beside the robot and its tasks."""
+        return mission
 
     def other(self, other: Task, task: Task) -> Task:
         """Another task of the mission as it would have to be."""
@@ -319,6 +310,8 @@ class Rule:
     asked
         of primitives (fields of `Parts`) that not every allocator can keep, the word of `capabilities` for those that
         can. Other rules that give the primitive ask for the same.
+    asked_by
+        the key by which the rule gives one of these, where not each of its keys does.
     for_good
         whether an allocator can keep them that never takes a task out of a route again.
     lifted_late
@@ -339,6 +332,7 @@ class Rule:
     ignorable: ClassVar[bool] = True
     about_one: ClassVar[bool] = True
     asked: ClassVar[Mapping[str, str]] = {}
+    asked_by: ClassVar[Mapping[str, str]] = {}
     for_good: ClassVar[bool] = True
     lifted_late: ClassVar[bool] = False
     of_a_route: ClassVar[bool] = False
@@ -347,13 +341,6 @@ class Rule:
     resource: ClassVar[tuple[str, str] | None] = None
     key: ClassVar[str | None] = None
     no_change: ClassVar[Any] = None
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        """For each word of `asked` the place of a problem that asks for it first; None: none does.
-
-        A rule is asked for what it gave first. Where nothing is said it is a robot or task with a key that it declares.
-        """
-        return {}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         """Contribute the primitives that it comes to."""
@@ -453,18 +440,6 @@ def above_room(problem: Question, meters: Sequence[Meter], routes: Routes) -> tu
             above += peak - most
             said = said or f"with it {problem.robots[i].id} would have {peak:g} {meter.name}, and has room for {most:g}"
     return above, said or "at every place in its route it would be broken"
-
-
-def first_task(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
-    """The first task that has something, named with the key; None: there is none."""
-    first = next((task.id for j, task in enumerate(problem.tasks) if has(j)), None)
-    return None if first is None else f"task {first}: {key}"
-
-
-def first_robot(problem: Question, key: str, has: Callable[[int], object]) -> str | None:
-    """The same of robots."""
-    first = next((robot.id for i, robot in enumerate(problem.robots) if has(i)), None)
-    return None if first is None else f"robot {first}: {key}"
 
 
 def listed(names: Collection[str]) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 from muster.mission.model import Robot
 from muster.model.parts import Parts
 from muster.model.rules.latest import Later, Latest
-from muster.model.rules.rule import ROUNDING, Bools, Found, Limits, Outlook, Question, Tried, first_robot
+from muster.model.rules.rule import ROUNDING, Bools, Found, Limits, Outlook, Question, Tried
 from muster.model.rules.times import known_least, longer, moments
 
 
@@ -53,13 +53,6 @@ class Shift(Latest):
     limits = ("over_by", True)
     lifts = LongerShift
     resource = ("shift", "shift")
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        until, spans = problem.model.over_by, problem.model.spans
-        return {
-            "shift": first_robot(problem, "available_until_s", lambda i: np.isfinite(until[i])),
-            "rests": first_robot(problem, "shifts_s", spans),
-        }
 
     def compile(self, problem: Question, parts: Parts) -> None:
         for i, robot in enumerate(problem.robots):

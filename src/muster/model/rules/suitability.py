@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar
 
-from muster.mission.model import Robot, Task
-from muster.model.rules.rule import Change, Question, Rule, Scores
+from muster.mission.model import Mission, Robot, Task
+from muster.model.rules.rule import Change, Question, Rule
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,10 @@ class LowScore(Change):
     def line(self) -> str:
         return f"suitability {self.needed:g}: {self.robot_type} scores {self.score:g} for {self.task_type}"
 
-    def suitability(self, table: Scores) -> Scores:
-        return {**table, self.robot_type: {**table[self.robot_type], self.task_type: self.needed}}
+    def mission(self, mission: Mission) -> Mission:
+        table = mission.suitability or {}
+        row = {**table[self.robot_type], self.task_type: self.needed}
+        return replace(mission, suitability={**table, self.robot_type: row})
 
 
 class Suitability(Rule):

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from muster.mission.model import Robot, Task, TeamPart
+from muster.mission.model import Mission, Robot, Task, TeamPart
 from muster.mission.texts.near_matches import did_you_mean
 from muster.model.bottleneck import fills, matched, on_some_matching
 from muster.model.parts import Parts
@@ -34,8 +34,8 @@ class MoreRobots(Change):
     def short(self) -> str:
         return self.said
 
-    def more_robots(self) -> tuple[Robot, ...]:
-        return self.robots
+    def mission(self, mission: Mission) -> Mission:
+        return replace(mission, robots=(*mission.robots, *self.robots))
 
 
 class Team(Rule):
@@ -45,13 +45,6 @@ class Team(Rule):
     about_one = False
     asked: ClassVar[Mapping[str, str]] = {"seats": "team", "sums": "team"}
     key = "team"
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        first = next(filter(problem.model.is_for_team, range(len(problem.tasks))), None)
-        if first is None:
-            return {"team": None}
-        task = problem.tasks[first]
-        return {"team": f"task {task.id}: {'needs' if task.needs else 'team' if task.team else 'robots_needed'}"}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         everybody = np.ones(len(problem.robots), np.bool_)

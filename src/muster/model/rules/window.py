@@ -12,7 +12,7 @@ import numpy as np
 from muster.mission.model import Robot, Task
 from muster.model.parts import Parts
 from muster.model.rules.latest import Later, Latest
-from muster.model.rules.rule import Bools, Limits, Outlook, Question, Tried, first_task, listed
+from muster.model.rules.rule import Bools, Limits, Outlook, Question, Tried, listed
 from muster.model.rules.times import known_least, longer, moments, reaches, span
 
 
@@ -46,9 +46,6 @@ class Window(Latest):
     key = "window"
     limits = ("openings", False)
     lifts = LongerWindow
-
-    def asks(self, problem: Question) -> Mapping[str, str | None]:
-        return {"window": first_task(problem, "window_s", lambda j: problem.model.openings[j])}
 
     def compile(self, problem: Question, parts: Parts) -> None:
         for j, task in enumerate(problem.tasks):

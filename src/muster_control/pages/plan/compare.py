@@ -16,6 +16,7 @@ from muster_control.pages.notices import errors_shown
 from muster_control.pages.plan.figures import LESS_IS_BETTER, figures_of, lines_of, meaning_of
 from muster_control.pages.plan.plan_panel import title_of
 from muster_control.pages.visitor import PATIENCE_S, the_services
+from muster_control.services.comparison import doers
 
 
 @ui.page("/plan/{mission}/compare", response_timeout=PATIENCE_S)
@@ -126,7 +127,7 @@ def _in_order(task: str) -> tuple[list[int], str]:
 
 def moved_tasks(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[tuple[str, str, str]]:
     """Tasks that two plans give to different robots, with both; `left out` where none does one."""
-    robots = [{str(task): route["robot"] for route in plan["routes"] for task in route["tasks"]} for plan in (a, b)]
+    robots = [doers(plan) for plan in (a, b)]
     tasks = sorted({*robots[0], *robots[1]}, key=_in_order)
     pairs = [(task, *(part.get(task, "left out") for part in robots)) for task in tasks]
     return [(task, first, second) for task, first, second in pairs if first != second]

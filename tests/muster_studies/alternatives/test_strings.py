@@ -8,9 +8,9 @@ from tests.random_missions import random_mission
 
 import muster
 from muster import core
-from muster.allocation.algorithms.strings import diversity, fitness, random_strings, ranking, read, roulette, string_of
 from muster.model.problem import Problem
 from muster_studies.alternatives import ipga, order_crossover
+from muster_studies.alternatives.strings import diversity, fitness, random_strings, ranking, read, roulette, string_of
 
 
 def test_a_string_is_read_as_a_ring():
