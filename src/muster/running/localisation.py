@@ -20,10 +20,9 @@ from muster.mission.value_types import shown
 from muster.motion.map_world import Body, World, body_of
 from muster.motion.port import Telemetry
 from muster.perception import dead_reckoning
-from muster.perception.dead_reckoning import HEADING, X, Y, Z
-from muster.perception.errors import ReckoningErrors
-from muster.perception.kalman import Estimate
-from muster.simulation import Noise, SimulatedWorld
+from muster.perception.joint_estimate import JointEstimate
+from muster.running.reckoning_noise import reckoning_errors
+from muster.simulation import SimulatedWorld
 from muster.simulation.landmark_sensors import LaserLandmarks, LaserParameters, TagCamera, TagParameters
 from muster.simulation.map_scans import MapScanParameters, MapScans, ScannedMap
 from muster.simulation.pose_sensors import (
@@ -62,12 +61,6 @@ Localise = str | Sequence[str] | Mapping[str, Mapping[str, float | str]]
 
 START_M, START_RAD = 0.001, 0.001
 """Within which robots know their poses at the beginning: standard deviations."""
-LEAST_SHARE, LEAST_TURN_SHARE, LEAST_TURN_PER_M = 0.01, 0.05, 0.05
-"""What odometry errs by in a filter's eyes where there is no noise: nothing is exact."""
-LEAST_SLIP = 0.02
-LEAST_RADPS = 0.001
-_TRACK_RADII, _NOMINAL_M = 0.287 / 0.3, 0.3
-"""As in `core/crowd/crowd_robot.hpp`: between the wheels, in radii; and the radius in place of one of 0."""
 
 
 def sensors_of(localise: Localise) -> Mapping[str, SensorParameters]:
@@ -164,7 +157,7 @@ class Localisation:
         if isinstance(how, LaserParameters):
             return LaserLandmarks(world, robot.id, self.mission.landmarks, how, self.seed)
         if isinstance(how, MapScanParameters):
-            return MapScans(world, robot.id, self._map_of(robot), how, reckoning_errors(robot, world.noise), self.seed)
+            return MapScans(world, robot.id, self._map_of(robot), how, reckoning_errors(robot, world), self.seed)
         if isinstance(how, TagParameters) and robot.camera is not None:
             return TagCamera(world, robot, robot.camera, self.mission.tags, how, self.seed)
         return None
@@ -209,9 +202,9 @@ class ReckonedPose(PoseEstimate):
     def __init__(self, world: SimulatedWorld, robot: str, correcting: Sequence[PoseSensor], *, inertial: bool) -> None:
         super().__init__(world, robot)
         self._correcting, self._inertial = correcting, inertial
-        self._errors = reckoning_errors(self._port.body, world.noise)
+        self._errors = reckoning_errors(self._port.body, world)
         spread = (START_M, START_M, START_M, START_RAD)
-        self.estimate: Estimate = dead_reckoning.standing_at(self.pose, spread, self._errors)
+        self.estimate: JointEstimate = dead_reckoning.standing_at(self.pose, spread, self._errors)
         self._correct()
 
     def update(self) -> None:
@@ -224,8 +217,8 @@ class ReckonedPose(PoseEstimate):
     def _correct(self) -> None:
         for sensor in self._correcting:
             self.estimate = sensor.corrected(self.estimate)
-        self.pose = self.estimate.mean[[X, Y, Z, HEADING]]
-        self.spread_m = math.sqrt((self.estimate.covariance[X, X] + self.estimate.covariance[Y, Y]) / 2)
+        self.pose = self.estimate.mean[:4]
+        self.spread_m = math.sqrt(float(np.square(self.estimate.deviations[:2]).mean()))
 
 
 class CapturedPose(PoseEstimate):
@@ -242,17 +235,3 @@ class CapturedPose(PoseEstimate):
         measured = self._capture.measured()
         if measured is not None:
             self.pose = measured
-
-
-def reckoning_errors(robot: Robot, noise: Noise) -> ReckoningErrors:
-    """What dead reckoning of a robot counts with in a world with this noise."""
-    of_wheel = math.hypot(noise.slip / math.sqrt(12), noise.odometry)
-    half_track = _TRACK_RADII / 2 * (robot.radius_m or _NOMINAL_M)
-    return ReckoningErrors(
-        way_share=max(LEAST_SHARE, of_wheel),
-        turn_share=max(LEAST_TURN_SHARE, of_wheel / math.sqrt(2)),
-        turn_per_m=max(LEAST_TURN_PER_M, of_wheel / (math.sqrt(2) * half_track)),
-        slip=max(LEAST_SLIP, noise.slip),
-        gyro_radps=max(LEAST_RADPS, noise.gyro_radps),
-        gyro_bias_radps=max(LEAST_RADPS, noise.gyro_bias_radps),
-    )

@@ -15,11 +15,11 @@ from muster.mission.model import Camera, Landmark, Robot, Tag
 from muster.motion.frames import angles
 from muster.motion.grid import Floats
 from muster.perception.camera import Intrinsics, View, mount_of_mission
-from muster.perception.dead_reckoning import HEADING, Z, by_landmark, by_range_and_bearing
-from muster.perception.geometric_detection import GroundTag, sightings_of
-from muster.perception.kalman import Estimate, gated
+from muster.perception.dead_reckoning import by_landmark, by_range_and_bearing
+from muster.perception.geometric_detection import MIDDLE_SHARE, GroundTag, sightings_of
+from muster.perception.ground_sightings import LevelCamera
+from muster.perception.joint_estimate import HEADING, JointEstimate, Z
 from muster.perception.laser import Scanner
-from muster.perception.localisation import Uncertainty, ground_covariance, on_ground
 from muster.perception.spikes import SpikeParameters, landmarks
 from muster.perception.tags import tag_pose
 from muster.simulation.cameras import true_body
@@ -28,8 +28,8 @@ from muster.simulation.pose_sensors import Readings, SensorParameters
 from muster.simulation.world import SimulatedWorld
 
 _STREAM = 0x7A65
-_FARTHEST_M = 20.0
-"""Of a tag, as of `camera_observer.CameraObserver`: near the horizon a pixel is worth many metres."""
+_LEAST_PX = 0.05
+"""Within which the middle of a tag is known at best."""
 _SURE = 3.0
 """Standard deviations of the estimate by which what is seen may be off a landmark and be that landmark."""
 
@@ -81,37 +81,30 @@ class TagCamera:
         ]
         self._places = [(tag.id, np.array(tag.position[:2])) for tag in tags]
         fov = math.radians(camera.fov_deg)
-        self._intrinsics = Intrinsics.of_view(camera.width_px, camera.height_px, fov)
-        self._mount, self._corner_px = mount_of_mission(camera), how.corner_px
+        self._camera = LevelCamera(
+            intrinsics=Intrinsics.of_view(camera.width_px, camera.height_px, fov),
+            mount=mount_of_mission(camera),
+            ground_m=world.ground_m,
+            pixel_px=max(MIDDLE_SHARE * how.corner_px, _LEAST_PX),
+        )
+        self._corner_px = how.corner_px
         self._random = np.random.default_rng(np.random.SeedSequence((seed, self._number), spawn_key=(_STREAM,)))
         self._readings = Readings(camera.rate_hz, 0.0, 1.0, self._random)
-        self._uncertainty = Uncertainty(pixel_px=max(how.corner_px, 0.1), angle_rad=world.noise.attitude_rad)
 
-    def corrected(self, estimate: Estimate) -> Estimate:
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
         """See `PoseSensor`."""
         if not self._readings.due(self._world.time_s):
             return estimate
         frame, axes = self._world.frames[self._number], self._world.axes[self._number]
-        view = View.from_body(self._intrinsics, true_body(frame, axes), self._mount)
-        seen = sightings_of(self._tags, view, self._random, self._corner_px).all
-        if not seen:
-            return estimate
-        level = self._level_view(estimate, frame, axes)
-        pixels = np.array([sighting.centre for sighting in seen])
-        places = on_ground(level, pixels, self._world.ground_m)
-        near = np.linalg.norm(places - level.position, axis=1) <= _FARTHEST_M  # False where NaN
-        covariances = ground_covariance(level, pixels[near], self._uncertainty, self._world.ground_m)
-        tags = [sighting.tag for sighting, is_near in zip(seen, near, strict=True) if is_near]
-        for tag, place, covariance in zip(tags, places[near, :2], covariances, strict=True):
-            landmark = _nearest(_in_map(estimate, place), [at for name, at in self._places if name == tag])
-            estimate = gated(estimate, by_landmark(estimate, landmark, place, covariance))
-        return estimate
-
-    def _level_view(self, estimate: Estimate, frame: Floats, axes: Floats) -> View:
-        """The camera of a robot at the origin that looks along x, as high and tilted as it takes itself to be."""
+        view = View.from_body(self._camera.intrinsics, true_body(frame, axes), self._camera.mount)
+        sightings = sightings_of(self._tags, view, self._random, self._corner_px).all
         height = float(estimate.mean[Z] + frame[2] - self._world.positions[self._number, 2])
         roll, pitch = angles(axes)[:2] + self._random.normal(0.0, self._world.noise.attitude_rad, 2)
-        return View.from_body(self._intrinsics, [0.0, 0.0, height, roll, pitch, 0.0], self._mount)
+        estimate = estimate.with_new_picture(self._world.noise.attitude_rad)
+        for tag, seen in self._camera.seen(sightings, height, roll, pitch):
+            landmark = _nearest(_in_map(estimate, seen.place), [at for name, at in self._places if name == tag])
+            estimate = by_landmark(estimate, landmark, seen).gated(estimate)
+        return estimate
 
 
 class LaserLandmarks:
@@ -134,7 +127,7 @@ class LaserLandmarks:
         step = float(self._laser.bearings[1] - self._laser.bearings[0])
         self._deviations = max(0.5 * how.range_m, 1e-3), step
 
-    def corrected(self, estimate: Estimate) -> Estimate:
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
         """See `PoseSensor`."""
         if not self._readings.due(self._world.time_s):
             return estimate
@@ -144,11 +137,11 @@ class LaserLandmarks:
             spread = float(np.hypot(*estimate.deviations[:2]) + mark.range_m * estimate.deviations[HEADING])
             if math.dist(place, known) <= self._near_m + _SURE * spread:
                 seen = by_range_and_bearing(estimate, known, mark.range_m, mark.bearing_rad, self._deviations)
-                estimate = gated(estimate, seen)
+                estimate = seen.gated(estimate)
         return estimate
 
 
-def _in_map(estimate: Estimate, place: Floats) -> Floats:
+def _in_map(estimate: JointEstimate, place: Floats) -> Floats:
     """A place (2,) of the robot's level axes in the map, by its estimated pose."""
     c, s = math.cos(estimate.mean[HEADING]), math.sin(estimate.mean[HEADING])
     return np.asarray(estimate.mean[:2] + np.array([[c, -s], [s, c]]) @ place)

@@ -11,9 +11,9 @@ from muster.motion.frames import wrapped
 from muster.motion.grid import Floats
 from muster.motion.map_world import Body, World
 from muster.motion.maps.free_points import free
-from muster.perception.dead_reckoning import HEADING, X, Y, Z, by_pose
+from muster.perception.dead_reckoning import by_pose
 from muster.perception.errors import ReckoningErrors
-from muster.perception.kalman import Estimate
+from muster.perception.joint_estimate import HEADING, JointEstimate, X, Y, Z
 from muster.perception.laser import Scanner
 from muster.perception.likelihood_field import LikelihoodField
 from muster.perception.monte_carlo import MonteCarlo, MonteCarloParameters
@@ -120,7 +120,7 @@ class MapScans:
         )
         self._before: Floats | None = None
 
-    def corrected(self, estimate: Estimate) -> Estimate:
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
         """See `PoseSensor`."""
         if not self._readings.due(self._world.time_s):
             return estimate

@@ -15,7 +15,7 @@ from muster.mission.errors import ParameterError
 from muster.motion.frames import wrapped
 from muster.motion.grid import Floats
 from muster.perception.dead_reckoning import by_pose, by_position
-from muster.perception.kalman import Estimate
+from muster.perception.joint_estimate import JointEstimate
 from muster.simulation.world import SimulatedWorld
 
 _STREAM = 0x905E
@@ -27,7 +27,7 @@ _LEAST_M, _LEAST_RAD = 1e-4, 1e-4
 class PoseSensor(Protocol):
     """One sensor of one robot."""
 
-    def corrected(self, estimate: Estimate) -> Estimate:
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
         """The estimate with what it measures now; the same estimate where it measures nothing now."""
         ...
 
@@ -153,7 +153,7 @@ class MotionCapture(_OfOneRobot):
         markers[3] = wrapped(markers[3])
         return markers
 
-    def corrected(self, estimate: Estimate) -> Estimate:
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
         """See `PoseSensor`."""
         pose = self.measured()
         return estimate if pose is None else by_pose(estimate, pose, self.deviations).estimate
@@ -167,7 +167,7 @@ class Satellites(_OfOneRobot):
         self._readings = Readings(how.rate_hz, how.drop_out, how.drop_out_s, self._random)
         self._error_m = how.position_m
 
-    def corrected(self, estimate: Estimate) -> Estimate:
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
         """See `PoseSensor`."""
         if not self._readings.due(self._world.time_s):
             return estimate
