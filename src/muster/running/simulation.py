@@ -120,7 +120,7 @@ class Simulation:
         if manager is not None:
             manager.expect(self._executor.outlook)
         self._camera_search = camera_search_for(
-            there, self._world, self._robots.ports, noise=request.noise, seed=seed, on_look=on_look
+            there, self._world, robots, noise=request.noise, seed=seed, on_look=on_look
         )
         self._recorder = recorder
         self._ahead = sorted(there.events, key=lambda event: event.at_s)

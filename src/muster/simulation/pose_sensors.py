@@ -15,7 +15,7 @@ from muster.mission.errors import ParameterError
 from muster.motion.frames import wrapped
 from muster.motion.grid import Floats
 from muster.perception.dead_reckoning import by_pose, by_position
-from muster.perception.joint_estimate import JointEstimate
+from muster.perception.joint_estimate import Fix, JointEstimate
 from muster.simulation.world import SimulatedWorld
 
 _STREAM = 0x905E
@@ -173,3 +173,29 @@ class Satellites(_OfOneRobot):
             return estimate
         place = self._pose[:3] + self._random.normal(0.0, self._error_m, 3)
         return by_position(estimate, place, [max(self._error_m, _LEAST_M)] * 3).estimate
+
+
+class ToldPoses:
+    """The noisy poses of a robot's own telemetry; none while it is silent."""
+
+    def __init__(self, world: SimulatedWorld, robot: str) -> None:
+        self._world, self._port = world, world.ports[robot]
+        noise, is_in_space = world.noise, len(self._port.body.position) == 3
+        position_m = max(noise.position_m, _LEAST_M)
+        self.deviations = (
+            position_m, position_m, position_m if is_in_space else _LEAST_M, max(noise.heading_rad, _LEAST_RAD)
+        )  # fmt: skip
+        self.fix: Fix | None = None
+        """The last correction."""
+        said = self._port.telemetry()
+        assert said is not None  # a simulated robot has telemetry from the beginning
+        self.start = np.array([*said.position, said.heading])
+        """The first pose that was told."""
+
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
+        """See `PoseSensor`."""
+        said = self._port.telemetry()
+        if said is None or said.time_s < self._world.time_s - 1e-6:
+            return estimate
+        self.fix = by_pose(estimate, [*said.position, said.heading], self.deviations)
+        return self.fix.estimate

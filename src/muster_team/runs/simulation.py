@@ -82,7 +82,7 @@ def negotiate_and_carry_out(
         camera_search = camera_search_for(
             mission,
             bodies,
-            robot_bodies.ports,
+            robots,
             noise=request.noise,
             seed=request.seed,
             on_look=request.on_look,
