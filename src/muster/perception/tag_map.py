@@ -18,7 +18,7 @@ import numpy as np
 
 from muster.perception.dead_reckoning import Seen, by_mark, with_mark
 from muster.perception.estimates import RawEstimates
-from muster.perception.joint_estimate import JointEstimate
+from muster.perception.joint_estimate import Fix, JointEstimate
 from muster.perception.kalman import Floats, is_expected
 from muster.perception.point_search import FoundCriteria, FoundPoint
 from muster.perception.points_of_interest import PointOfInterest
@@ -137,7 +137,7 @@ class TagMap:
         known = [mark for mark in self._marks[robot] if mark.tag == tag]
         fixes = [(by_mark(estimate, mark.number, seen), mark) for mark in known]
         fix, mark = min(fixes, key=lambda one: one[0].nis, default=(None, None))
-        if fix is not None and mark is not None and fix.nis < ANOTHER:
+        if fix is not None and mark is not None and not self._is_another(fix):
             if not is_expected(fix.nis, 2):
                 return estimate, None
             mark.sightings += 1
@@ -145,6 +145,10 @@ class TagMap:
         mark = _Mark(robot, tag, len(estimate.marks))
         self._marks[robot].append(mark)
         return with_mark(estimate, seen), mark
+
+    def _is_another(self, fix: Fix) -> bool:
+        """Whether what was seen is not the mark, but another tag of its id: tags as near as `apart_m` are one."""
+        return fix.nis > ANOTHER and float(np.linalg.norm(fix.innovation)) > self._criteria.apart_m
 
     def _is_shifted(self, mark: _Mark, estimate: JointEstimate) -> bool:
         return bool(np.abs(estimate.marks[mark.number] - mark.place).max() > _SHIFTED_M)

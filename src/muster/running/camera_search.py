@@ -28,7 +28,7 @@ from muster.perception.ground_sightings import LevelCamera
 from muster.perception.joint_estimate import JointEstimate
 from muster.perception.localisation import Uncertainty
 from muster.perception.point_search import FoundCriteria, FoundPoint
-from muster.perception.points_of_interest import PointOfInterest, remarks
+from muster.perception.points_of_interest import PointOfInterest, radius_95, remarks
 from muster.perception.tag_map import TagMap
 from muster.running.localisation import GivenPose, PoseEstimate
 from muster.running.state_estimation import LocalisedPort, RobotsInWorld
@@ -233,6 +233,7 @@ class CameraSearch:
             tag=find.tag,
             position=place,
             deviation_m=math.sqrt(float(np.linalg.eigvalsh(point.covariance)[-1])),
+            sure_to_m=radius_95(point.covariance),
             error_m=min((math.dist(place, true) for true in truth), default=None),
             sightings=point.sightings,
             robots=point.robots,
