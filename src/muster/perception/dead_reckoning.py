@@ -28,7 +28,9 @@ from muster.perception.joint_estimate import (
     X,
     Y,
     Z,
+    exponential,
     fixed,
+    stretched_by_turn,
     turned_places,
 )
 from muster.perception.kalman import Floats, require_seconds
@@ -36,6 +38,8 @@ from muster.perception.kalman import Floats, require_seconds
 _LEAST_M, _LEAST_RAD = 1e-5, 1e-6
 """By which odometry may err in a step in which nothing moves: a covariance needs some variance."""
 _QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
+_MOST_TIMES, _LINEAR_M = 5, 1e-4
+"""How often a correction is computed at most, and by how much it may miss what is not linear."""
 
 
 @dataclass(frozen=True)
@@ -188,10 +192,33 @@ def by_landmark(estimate: JointEstimate, landmark: npt.ArrayLike, seen: Seen) ->
 
 
 def by_mark(estimate: JointEstimate, number: int, seen: Seen) -> Fix:
-    """Correct pose and marks by seeing a mark of the estimate again."""
-    sensor, innovation = _sensor(estimate, estimate.marks[number], seen)
-    sensor[:, OWN + 2 * number : OWN + 2 * number + 2] = _into(estimate)
-    return fixed(estimate, sensor, innovation, seen.covariance)
+    """Correct pose and marks by seeing a mark of the estimate again.
+
+    Where a robot comes back after it has drifted far, the correction is large, and what is seen is not linear in it:
+    the derivative is taken again at the corrected state.
+    """
+    errors = np.zeros(len(estimate.mean))
+    for _ in range(_MOST_TIMES):
+        sensor, expected = _seen_at(estimate, number, seen, errors)
+        fix = fixed(estimate, sensor, seen.place - expected + sensor @ errors, seen.covariance)
+        changed, errors = np.abs(fix.errors - errors), fix.errors
+        if changed[HEADING] * changed.max() < _LINEAR_M:
+            break
+    return fix
+
+
+def _seen_at(estimate: JointEstimate, number: int, seen: Seen, errors: Floats) -> tuple[Floats, Floats]:
+    """What is expected of a mark in a state that differs by errors, (2,); its derivative by them, (2, 8 + 2 n)."""
+    mark, into = slice(OWN + 2 * number, OWN + 2 * number + 2), _into(estimate)
+    apart, angle = errors[mark] - errors[:2], -float(errors[HEADING])
+    _, stretch = exponential(angle)  # turned back by the error of the heading, the shift is stretched so
+    sensor, tilt = np.zeros((2, len(errors))), [ROLL, PITCH]
+    sensor[:, mark] = into @ stretch
+    sensor[:, [X, Y]] = -sensor[:, mark]
+    sensor[:, HEADING] = -into @ stretched_by_turn(angle) @ apart
+    sensor[:, Z], sensor[:, tilt] = -seen.by_height, seen.by_tilt
+    expected = into @ (estimate.marks[number] - estimate.mean[:2] + stretch @ apart)
+    return sensor, expected - seen.by_height * errors[Z] + seen.by_tilt @ (estimate.mean[tilt] + errors[tilt])
 
 
 def with_mark(estimate: JointEstimate, seen: Seen) -> JointEstimate:

@@ -26,6 +26,10 @@ from muster.perception.clusters import LONE, Labels
 from muster.perception.estimates import NO_TAG, RawEstimates
 
 
+_RADII_95 = ((0.0, 0.2, 0.4, 0.6, 0.8, 1.0), (1.960, 1.970, 2.005, 2.081, 2.230, 2.448))
+"""Ratios of the least to the greatest deviation, and the radius, in greatest deviations, that holds 95 %."""
+
+
 @dataclass(frozen=True, eq=False)
 class PointOfInterest:
     """An object that was found.
@@ -72,11 +76,11 @@ def points_of_interest(
 def radius_95(covariance: Floats) -> float:
     """Return the radius of the circle that holds a Gaussian error of covariance (2, 2) with a probability of 95 %.
 
-    To 0.1 %, by the polynomial of the ratio of both deviations that [usaf1962] gives.
+    To 1 %: the Gaussian is integrated for some ratios of both deviations (`_RADII_95`).
     """
     least, greatest = np.sqrt(np.maximum(np.linalg.eigvalsh(covariance), 0.0)).tolist()
     ratio = least / greatest if greatest > 0 else 0.0
-    return float(greatest * (1.960790 + ratio * (0.004071 + ratio * (0.114276 + ratio * 0.371625))))
+    return float(greatest * np.interp(ratio, *_RADII_95))
 
 
 def remarks(points: tuple[PointOfInterest, ...], seen: Collection[int] = ()) -> tuple[str, ...]:

@@ -66,8 +66,10 @@ class TaskReport:
     """Usage for one task done and the way to it: by the plan when its robot left for it, and measured.
 
     `waiting_s` is for how long its robot waited there. Of a task done by a team `robot` is the first of the `team`, and
-    usages and waiting are those of all. `lateness_s` is by how much it ended after its due time. Where a simulated world
-    knows, `done_m_off` is how far from its true place it was done, and `within_m` how far at most it may be.
+    usages and waiting are those of all. `lateness_s` is by how much it ended after its due time.
+
+    Where a simulated world knows, `done_m_off` is how far from its true place it was done, and `within_m` how far at
+    most that may be.
     """
 
     task: str
