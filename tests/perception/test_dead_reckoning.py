@@ -19,7 +19,7 @@ from muster.perception.dead_reckoning import (
     with_mark,
 )
 from muster.perception.errors import ReckoningErrors
-from muster.perception.joint_estimate import BIAS, HEADING, SLIP, JointEstimate, Z, turned_places
+from muster.perception.joint_estimate import BIAS, HEADING, SKID, SLIP, JointEstimate, Z, turned_places
 
 ERRORS = ReckoningErrors()
 SURE = (1e-3, 1e-3, 1e-3, 1e-3)
@@ -110,13 +110,13 @@ def test_sensors_have_the_derivatives_of_what_they_expect(fix):
     assert take(estimate).innovation_covariance == pytest.approx(spread, abs=1e-4)
 
 
-def test_a_gyro_finds_the_slip_of_the_turns():
-    """Odometry counts a tenth too much of way and turn, the gyro is exact."""
-    errors = ReckoningErrors(slip=0.1, gyro_radps=1e-4, gyro_bias_radps=1e-4)
+def test_a_gyro_finds_the_skid():
+    """Odometry counts a tenth too much of the turn, the gyro is exact."""
+    errors = ReckoningErrors(skid=0.1, gyro_radps=1e-4, gyro_bias_radps=1e-4)
     estimate = dead_reckoning.standing_at([0, 0, 0, 0], SURE, errors)
     for _ in range(100):
         estimate = dead_reckoning.moved(estimate, Odometry(0.1, (0.1, 0.0, 0.0), 0.1), errors, 0.9)
-    assert estimate.mean[SLIP] == pytest.approx(0.1, abs=0.01)
+    assert estimate.mean[SKID] == pytest.approx(0.1, abs=0.01)
     assert estimate.mean[HEADING] == pytest.approx(wrapped(9.0), abs=0.01)
 
 

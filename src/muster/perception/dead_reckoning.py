@@ -22,15 +22,14 @@ from muster.perception.joint_estimate import (
     OWN,
     PITCH,
     ROLL,
+    SKID,
     SLIP,
     Fix,
     JointEstimate,
     X,
     Y,
     Z,
-    exponential,
     fixed,
-    stretched_by_turn,
     turned_places,
 )
 from muster.perception.kalman import Floats, require_seconds
@@ -38,8 +37,6 @@ from muster.perception.kalman import Floats, require_seconds
 _LEAST_M, _LEAST_RAD = 1e-5, 1e-6
 """By which odometry may err in a step in which nothing moves: a covariance needs some variance."""
 _QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
-_MOST_TIMES, _LINEAR_M = 5, 1e-4
-"""How often a correction is computed at most, and by how much it may miss what is not linear."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +60,7 @@ class Odometry:
 
 def standing_at(pose: npt.ArrayLike, deviations: npt.ArrayLike, errors: ReckoningErrors) -> JointEstimate:
     """A robot at rest at a pose (4,) of x, y, z and heading that is known within `deviations` (4,)."""
-    spread = [*np.asarray(deviations, dtype=np.float64), errors.gyro_bias_radps, errors.slip, 0.0, 0.0]
+    spread = [*np.asarray(deviations, dtype=np.float64), errors.gyro_bias_radps, errors.slip, errors.skid, 0.0, 0.0]
     nowhere = JointEstimate(np.zeros(OWN), np.diag(np.square(spread)))
     return nowhere.with_pose(pose, deviations)
 
@@ -74,7 +71,7 @@ def moved(
     """The estimate a step later, by what odometry counted and the mean yaw rate by a gyro, None without one.
 
     The turn by odometry and that by the gyro are weighed by their variances. Their difference, whose error is not
-    correlated with that of the weighed mean, corrects bias and slip.
+    correlated with that of the weighed mean, corrects bias and skid.
 
     Raises
     ------
@@ -93,7 +90,8 @@ def moved(
         weight = turn_spread**2 / (turn_spread**2 + gyro_spread**2)
         turn_spread *= gyro_spread / math.hypot(turn_spread, gyro_spread)
     kept = 1 - estimate.mean[SLIP]
-    turn = (1 - weight) * by_wheels * kept + weight * (by_gyro - counted.seconds * estimate.mean[BIAS])
+    by_wheels *= 1 - weight
+    turn = by_wheels * (1 - estimate.mean[SKID]) + weight * (by_gyro - counted.seconds * estimate.mean[BIAS])
     whole = errors.way_kept * _in_map(counted.way_m, float(estimate.mean[HEADING] + turn / 2))
     mean = estimate.mean.copy()
     mean[:3] += kept * whole
@@ -101,9 +99,8 @@ def moved(
     by_turn = _by_turn(estimate.mean, kept * whole)
     along = np.zeros(len(mean))
     along[:3] = whole
-    by_drift = np.zeros((len(mean), 2))  # the derivative of the errors after the step by those of bias and slip
-    by_drift[:, 0] = -weight * counted.seconds * by_turn
-    by_drift[:, 1] = -(1 - weight) * by_wheels * by_turn - along
+    # The derivative of the errors after the step by those of bias, slip and skid.
+    by_drift = np.column_stack([-weight * counted.seconds * by_turn, -along, -by_wheels * by_turn])
     spread = _carried(estimate.errors, by_drift)
     spread += np.outer(turn_spread * by_turn, turn_spread * by_turn)
     spread += errors.way_share**2 * np.outer(along, along)
@@ -129,8 +126,8 @@ def _by_turn(state: Floats, way: Floats) -> Floats:
 
 
 def _carried(errors: Floats, by_drift: Floats) -> Floats:
-    """F P F^T, where F is 1 but for the columns of bias and slip."""
-    drift = [BIAS, SLIP]
+    """F P F^T, where F is 1 but for the columns of bias, slip and skid."""
+    drift = [BIAS, SLIP, SKID]
     across = errors[:, drift] @ by_drift.T
     return np.asarray(errors + across + across.T + by_drift @ errors[np.ix_(drift, drift)] @ by_drift.T)
 
@@ -138,9 +135,9 @@ def _carried(errors: Floats, by_drift: Floats) -> Floats:
 def _by_difference(
     estimate: JointEstimate, seconds: float, by_wheels: float, by_gyro: float, spread: float
 ) -> JointEstimate:
-    """Correct bias and slip by how much more the gyro says that the robot turned than its odometry."""
+    """Correct bias and skid by how much more the gyro says that the robot turned than its odometry."""
     sensor = np.zeros((1, len(estimate.mean)))
-    sensor[0, [BIAS, SLIP]] = seconds, -by_wheels
+    sensor[0, [BIAS, SKID]] = seconds, -by_wheels
     more = by_gyro - by_wheels - sensor @ estimate.mean
     return fixed(estimate, sensor, more, np.array([[spread**2]])).estimate
 
@@ -194,31 +191,18 @@ def by_landmark(estimate: JointEstimate, landmark: npt.ArrayLike, seen: Seen) ->
 def by_mark(estimate: JointEstimate, number: int, seen: Seen) -> Fix:
     """Correct pose and marks by seeing a mark of the estimate again.
 
-    Where a robot comes back after it has drifted far, the correction is large, and what is seen is not linear in it:
-    the derivative is taken again at the corrected state.
+    Where a mark is from the robot is linear in the errors but for the product of the heading's error and the shift
+    between both; mean and covariance of that count as those of a Gaussian. (To take the derivative again at the
+    corrected state would give information about the heading that nobody has.)
     """
-    errors = np.zeros(len(estimate.mean))
-    for _ in range(_MOST_TIMES):
-        sensor, expected = _seen_at(estimate, number, seen, errors)
-        fix = fixed(estimate, sensor, seen.place - expected + sensor @ errors, seen.covariance)
-        changed, errors = np.abs(fix.errors - errors), fix.errors
-        if changed[HEADING] * changed.max() < _LINEAR_M:
-            break
-    return fix
-
-
-def _seen_at(estimate: JointEstimate, number: int, seen: Seen, errors: Floats) -> tuple[Floats, Floats]:
-    """What is expected of a mark in a state that differs by errors, (2,); its derivative by them, (2, 8 + 2 n)."""
     mark, into = slice(OWN + 2 * number, OWN + 2 * number + 2), _into(estimate)
-    apart, angle = errors[mark] - errors[:2], -float(errors[HEADING])
-    _, stretch = exponential(angle)  # turned back by the error of the heading, the shift is stretched so
-    sensor, tilt = np.zeros((2, len(errors))), [ROLL, PITCH]
-    sensor[:, mark] = into @ stretch
-    sensor[:, [X, Y]] = -sensor[:, mark]
-    sensor[:, HEADING] = -into @ stretched_by_turn(angle) @ apart
-    sensor[:, Z], sensor[:, tilt] = -seen.by_height, seen.by_tilt
-    expected = into @ (estimate.marks[number] - estimate.mean[:2] + stretch @ apart)
-    return sensor, expected - seen.by_height * errors[Z] + seen.by_tilt @ (estimate.mean[tilt] + errors[tilt])
+    sensor, innovation = _sensor(estimate, estimate.marks[number], seen)
+    sensor[:, mark] = into
+    turned = into @ _QUARTER / 2
+    along = turned @ (estimate.errors[mark, HEADING] - estimate.errors[:2, HEADING])
+    variance, apart = estimate.errors[HEADING, HEADING], estimate.seen_covariance(number)
+    product = variance * turned @ apart @ turned.T + np.outer(along, along)
+    return fixed(estimate, sensor, innovation + along, seen.covariance + product)
 
 
 def with_mark(estimate: JointEstimate, seen: Seen) -> JointEstimate:
@@ -248,7 +232,7 @@ def by_range_and_bearing(
 
 
 def _sensor(estimate: JointEstimate, place: Floats, seen: Seen) -> tuple[Floats, Floats]:
-    """The derivative (2, 8 + 2 n) by the errors of the robot's own state, and the innovation (2,)."""
+    """The derivative (2, 9 + 2 n) by the errors of the robot's own state, and the innovation (2,)."""
     into = _into(estimate)
     sensor = np.zeros((2, len(estimate.mean)))
     sensor[:, [X, Y]], sensor[:, Z], sensor[:, [ROLL, PITCH]] = -into, -seen.by_height, seen.by_tilt

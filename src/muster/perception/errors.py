@@ -75,8 +75,9 @@ class ReckoningErrors(_Deviations):
         of the same, in each direction.
     turn_share, turn_per_m
         of the turn that it counts in a step: a share of it, and radians for each metre of way; they add as variances.
-    slip
-        of the share of what odometry counts that is never travelled nor turned beside `way_kept`, at the beginning.
+    slip, skid
+        of the share of the counted way, and of the counted turn, that is never travelled beside `way_kept` and
+        `turn_kept`, at the beginning.
     gyro_radps, gyro_bias_radps, gyro_walk
         as in `GroundErrors`.
 
@@ -93,6 +94,7 @@ class ReckoningErrors(_Deviations):
     turn_share: float = 0.01
     turn_per_m: float = 0.02
     slip: float = 0.02
+    skid: float = 0.02
     gyro_radps: float = 0.01
     gyro_bias_radps: float = 0.01
     gyro_walk: float = 1e-4

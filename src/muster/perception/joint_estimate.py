@@ -9,9 +9,10 @@ an uncertain heading is nearly Gaussian, although its places lie along an arc; a
 a shift of pose and marks together, stays unobserved, whatever the estimate is. An extended Kalman filter of
 coordinates of the map loses both, and becomes too sure.
 
-The state is (8 + 2 n,): x, y, z in metres and heading in radians of the map frame, the heading in [-pi, pi); bias of
-the gyro in rad/s; slip, the share of the counted way and turn that is not travelled; by how much roll and pitch are
-measured too large in the last picture, which all that is seen in it shares; x and y of each of n marks.
+The state is (9 + 2 n,): x, y, z in metres and heading in radians of the map frame, the heading in [-pi, pi); bias of
+the gyro in rad/s; slip and skid, the shares of the counted way, and of the counted turn, that are not travelled; by how
+much roll and pitch are measured too large in the last picture, which all that is seen in it shares; x and y of each of
+n marks.
 """
 
 from __future__ import annotations
@@ -26,11 +27,10 @@ from muster.mission.errors import ParameterError
 from muster.motion.frames import wrapped
 from muster.perception.kalman import Floats, is_expected
 
-X, Y, Z, HEADING, BIAS, SLIP, ROLL, PITCH = range(8)
-OWN = 8
+X, Y, Z, HEADING, BIAS, SLIP, SKID, ROLL, PITCH = range(9)
+OWN = 9
 """How many numbers of the state come before those of the marks."""
 _POSE = [X, Y, Z, HEADING]
-_QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
 _STRAIGHT = 1e-4
 """Radians below which a series stands for sin(a) / a."""
 
@@ -42,9 +42,9 @@ class JointEstimate:
     Parameters
     ----------
     mean
-        (8 + 2 n,) the state.
+        (9 + 2 n,) the state.
     errors
-        (8 + 2 n, 8 + 2 n) covariance of the errors, right-invariant where they are of places and heading.
+        (9 + 2 n, 9 + 2 n) covariance of the errors, right-invariant where they are of places and heading.
     """
 
     mean: Floats
@@ -57,7 +57,7 @@ class JointEstimate:
 
     @property
     def covariance(self) -> Floats:
-        """Covariance of the state itself, to first order, (8 + 2 n, 8 + 2 n)."""
+        """Covariance of the state itself, to first order, (9 + 2 n, 9 + 2 n)."""
         by_error = np.eye(len(self.mean))
         by_error[:, HEADING] += turned_places(self.mean)
         return np.asarray(by_error @ self.errors @ by_error.T)
@@ -85,7 +85,7 @@ class JointEstimate:
         place = self.mean[first : first + 2]
         off = []
         for shift in math.sqrt(3) * np.concatenate([spread.T, -spread.T]):
-            turn, stretch = exponential(shift[0])
+            turn, stretch = _exponential(shift[0])
             off.append(turn @ place + stretch @ shift[1:] - place)
         return np.asarray(np.array(off).T @ np.array(off) / 6)
 
@@ -100,14 +100,14 @@ class JointEstimate:
         """Return the right-invariant error (3,) of heading, x, y against the true x, y, heading; its covariance."""
         x, y, heading = np.asarray(pose, dtype=np.float64)
         turned = float(wrapped(heading - self.mean[HEADING]))
-        turn, stretch = exponential(turned)
+        turn, stretch = _exponential(turned)
         shift = np.linalg.solve(stretch, np.array([x, y]) - turn @ self.mean[:2])
         at = [HEADING, X, Y]
         return np.array([turned, *shift]), self.errors[np.ix_(at, at)]
 
     def shifted(self, errors: Floats) -> Floats:
-        """Return the state (8 + 2 n,) that differs from the mean by errors (8 + 2 n,)."""
-        turn, stretch = exponential(float(errors[HEADING]))
+        """Return the state (9 + 2 n,) that differs from the mean by errors (9 + 2 n,)."""
+        turn, stretch = _exponential(float(errors[HEADING]))
         state = self.mean + errors
         state[:2] = turn @ self.mean[:2] + stretch @ errors[:2]
         state[HEADING] = wrapped(state[HEADING])
@@ -141,14 +141,11 @@ class Fix:
     ----------
     estimate
         with the measurement.
-    errors
-        (8 + 2 n,) by which the state is corrected.
     innovation, innovation_covariance
         (m,) measured less expected, and (m, m) of that.
     """
 
     estimate: JointEstimate
-    errors: Floats
     innovation: Floats
     innovation_covariance: Floats
 
@@ -168,7 +165,7 @@ def fixed(estimate: JointEstimate, sensor: Floats, innovation: Floats, uncertain
     Parameters
     ----------
     sensor
-        (m, 8 + 2 n) derivative of what would be measured by the errors.
+        (m, 9 + 2 n) derivative of what would be measured by the errors.
     innovation, uncertainty
         (m,) measured less expected, and (m, m) the covariance of the measurement.
 
@@ -188,50 +185,20 @@ def fixed(estimate: JointEstimate, sensor: Floats, innovation: Floats, uncertain
     gain = np.linalg.solve(spread, across.T).T
     half = gain @ across.T
     spread_after = estimate.errors - half - half.T + gain @ spread @ gain.T  # Joseph's form, multiplied out
-    errors = gain @ innovation
-    carrying = _carried_along(errors)
-    if carrying is not None:
-        spread_after = carrying @ spread_after @ carrying.T
     spread_after = (spread_after + spread_after.T) / 2  # or rounding grows from one correction to the next
-    return Fix(JointEstimate(estimate.shifted(errors), spread_after), errors, innovation, spread)
-
-
-def _carried_along(errors: Floats) -> Floats | None:
-    """The derivative of the errors against the corrected state by those against the state before; None where it is 1.
-
-    It is the left Jacobian of the group of a turn and of shifts of all that is in the map.
-    """
-    angle = float(errors[HEADING])
-    if abs(angle) < _STRAIGHT and np.abs(errors).max() < _STRAIGHT:
-        return None
-    _, stretch = exponential(angle)
-    by_turn = stretched_by_turn(angle) - _QUARTER @ stretch
-    carrying = np.eye(len(errors))
-    for first in (X, *range(OWN, len(errors), 2)):
-        at = slice(first, first + 2)
-        carrying[at, at] = stretch
-        carrying[at, HEADING] = by_turn @ errors[at]
-    return carrying
-
-
-def stretched_by_turn(angle: float) -> Floats:
-    """Return the derivative of the second matrix of `exponential` by the angle, (2, 2)."""
-    if abs(angle) < _STRAIGHT:
-        return -angle / 3 * np.eye(2) + _QUARTER / 2
-    c, s = math.cos(angle), math.sin(angle)
-    return (c - s / angle) / angle * np.eye(2) + (s - (1 - c) / angle) / angle * _QUARTER
+    return Fix(JointEstimate(estimate.shifted(gain @ innovation), spread_after), innovation, spread)
 
 
 def turned_places(state: Floats) -> Floats:
-    """Return by how much a turn about the map's origin, a radian of it, moves the state: (8 + 2 n,)."""
+    """Return by how much a turn about the map's origin, a radian of it, moves the state: (9 + 2 n,)."""
     moved = np.zeros(len(state))
     moved[[X, Y]] = -state[Y], state[X]
     moved[OWN::2], moved[OWN + 1 :: 2] = -state[OWN + 1 :: 2], state[OWN::2]
     return moved
 
 
-def exponential(angle: float) -> tuple[Floats, Floats]:
-    """Return the turn (2, 2) by an angle, and the matrix (2, 2) of the shift in the exponential map of the plane."""
+def _exponential(angle: float) -> tuple[Floats, Floats]:
+    """The turn (2, 2) by an angle, and the matrix (2, 2) of the shift in the exponential map of the plane."""
     c, s = math.cos(angle), math.sin(angle)
     along, across = (s / angle, (1 - c) / angle) if abs(angle) > _STRAIGHT else (1 - angle**2 / 6, angle / 2)
     return np.array([[c, -s], [s, c]]), np.array([[along, -across], [across, along]])

@@ -25,7 +25,6 @@ from muster.mission.values.arrays import Floats
 from muster.perception.clusters import LONE, Labels
 from muster.perception.estimates import NO_TAG, RawEstimates
 
-
 _RADII_95 = ((0.0, 0.2, 0.4, 0.6, 0.8, 1.0), (1.960, 1.970, 2.005, 2.081, 2.230, 2.448))
 """Ratios of the least to the greatest deviation, and the radius, in greatest deviations, that holds 95 %."""
 

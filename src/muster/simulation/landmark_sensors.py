@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.mission.model import Camera, Landmark, Robot, Tag
-from muster.motion.frames import angles
+from muster.motion.frames import angles, wrapped
 from muster.motion.grid import Floats
 from muster.perception.camera import Intrinsics, View, mount_of_mission
 from muster.perception.dead_reckoning import by_landmark, by_range_and_bearing
 from muster.perception.geometric_detection import MIDDLE_SHARE, GroundTag, sightings_of
 from muster.perception.ground_sightings import LevelCamera
-from muster.perception.joint_estimate import HEADING, JointEstimate, Z
+from muster.perception.joint_estimate import HEADING, JointEstimate, X, Y, Z
 from muster.perception.laser import Scanner
 from muster.perception.spikes import SpikeParameters, landmarks
 from muster.perception.tags import tag_pose
@@ -28,6 +28,10 @@ from muster.simulation.pose_sensors import Readings, SensorParameters
 from muster.simulation.world import SimulatedWorld
 
 _STREAM = 0x7A65
+_RANGE_SHARE, _BEARING_SHARE = 0.5, 0.25
+"""Of the error of a range, and of the angle between beams: how far the middle of a landmark is off in one scan."""
+_LASTING_M = 0.001
+"""What of the distance lasts while the robot stands, as the beams meet the landmark in the same places."""
 _LEAST_PX = 0.05
 """Within which the middle of a tag is known at best."""
 _SURE = 3.0
@@ -125,7 +129,10 @@ class LaserLandmarks:
         self._near_m = how.near_m
         self._readings = Readings(how.rate_hz, 0.0, 1.0, np.random.default_rng(seed))
         step = float(self._laser.bearings[1] - self._laser.bearings[0])
-        self._deviations = max(0.5 * how.range_m, 1e-3), step
+        self._step = step
+        self._white = np.array([max(_RANGE_SHARE * how.range_m, 1e-3), _BEARING_SHARE * step])
+        self._lasting = np.array([_LASTING_M, _BEARING_SHARE * step])
+        self._looks: dict[tuple[float, ...], _Looks] = {}
 
     def corrected(self, estimate: JointEstimate) -> JointEstimate:
         """See `PoseSensor`."""
@@ -136,9 +143,38 @@ class LaserLandmarks:
             known = _nearest(place, self._places)
             spread = float(np.hypot(*estimate.deviations[:2]) + mark.range_m * estimate.deviations[HEADING])
             if math.dist(place, known) <= self._near_m + _SURE * spread:
-                seen = by_range_and_bearing(estimate, known, mark.range_m, mark.bearing_rad, self._deviations)
+                deviations = self._deviations(estimate, known)
+                seen = by_range_and_bearing(estimate, known, mark.range_m, mark.bearing_rad, deviations)
                 estimate = seen.gated(estimate)
         return estimate
+
+    def _deviations(self, estimate: JointEstimate, known: Floats) -> tuple[float, float]:
+        """What a sighting counts for: from one place those of one landmark share what lasts of their errors.
+
+        The information of k of them is 1 / (B + W / k), with the variances B of what lasts and W of what does not;
+        here it is what the last of them adds to that.
+        """
+        looks, pose = self._looks.get(tuple(known)), estimate.mean[[X, Y, HEADING]]
+        if looks is None or looks.is_elsewhere(pose, self._step):
+            looks = self._looks[tuple(known)] = _Looks(pose)
+        looks.count += 1
+        white, lasting = self._white**2, self._lasting**2
+        variances = (looks.count * lasting + white) * ((looks.count - 1) * lasting + white) / white
+        range_m, bearing_rad = np.sqrt(variances).tolist()
+        return range_m, bearing_rad
+
+
+@dataclass
+class _Looks:
+    """How often a landmark was seen from about one pose (3,): x, y, heading."""
+
+    pose: Floats
+    count: int = 0
+
+    def is_elsewhere(self, pose: Floats, beam_rad: float) -> bool:
+        """Whether beams meet the landmark otherwise by now."""
+        turned = abs(float(wrapped(pose[2] - self.pose[2])))
+        return math.dist(pose[:2], self.pose[:2]) > _LASTING_M * 10 or turned > beam_rad
 
 
 def _in_map(estimate: JointEstimate, place: Floats) -> Floats:
