@@ -38,10 +38,6 @@ SETTINGS: Mapping[str, tuple[tuple[str, ...] | None, Noise]] = {
         ("odometry", "inertial"),
         Noise(odometry=0.05, slip=0.05, gyro_radps=0.01, gyro_bias_radps=0.005),
     ),
-    "odometry, gyro and GPS": (
-        ("odometry", "inertial", "gps"),
-        Noise(odometry=0.05, slip=0.05, gyro_radps=0.01, gyro_bias_radps=0.005),
-    ),
     "poses that are told": (
         None,
         Noise(odometry=0.02, slip=0.05, position_m=0.1, heading_rad=0.05, attitude_rad=math.radians(1)),
