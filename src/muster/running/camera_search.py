@@ -188,7 +188,7 @@ class CameraSearch:
         seen = eye.level.seen(look.observation.sightings.all, z, roll, pitch, late_m)
         estimate, finds = self.search.take(observer.robot, estimate, seen, look.observation.estimates, now)
         eye.pose.learn(estimate)
-        return look, finds
+        return replace(look, finds=self.search.finds), finds
 
     def _late_m(self, said: Telemetry) -> Floats:
         """How far a robot has gone ahead and to the left since the picture was taken."""

@@ -29,7 +29,6 @@ from muster.running.worlds import has_ability, world_named
 from muster.simulation import NO_NOISE, SimulatedWorld
 from muster.simulation.declaration import EXACT
 from muster.state import MissionState, OtherEvent
-from muster.state.task_events import Ends, Starts
 from muster.verification import verify
 from muster.verification.required import require_geometry, require_open_ways
 
@@ -270,11 +269,8 @@ class Simulation:
     def _judge(self) -> None:
         """Compare where work began, goes on and ended with where it was to be."""
         events, self._judged = self._executor.events.since(self._judged), self._executor.events.total
-        for event in events:
-            if isinstance(event, Starts):
-                self._true_places.begins(self._executor.ledger.tasks[event.task], event.team or (event.robot,))
-            elif isinstance(event, Ends) and (off := self._true_places.ends(event.task)) is not None:
-                self._executor.emit(off)
+        for off in self._true_places.follow(events, self._executor.ledger.tasks):
+            self._executor.emit(off)
         self._true_places.look()
 
     def _tag_of(self, task: str) -> int | None:

@@ -7,7 +7,7 @@ and so does the mission; the report says what is true.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -16,7 +16,8 @@ from muster.mission.model import Mission, Robot, Task
 from muster.motion.actions.tolerance import ends_at_its_place, tolerance_m
 from muster.running.state_estimation import LocalisedPort, RobotsInWorld
 from muster.simulation import SimulatedWorld
-from muster.state import OtherEvent
+from muster.state import ExecutionEvent, OtherEvent
+from muster.state.task_events import Ends, Starts
 
 TagOf = Callable[[str], int | None]
 """The tag that a task has come of, by the task's id; None: of none."""
@@ -66,8 +67,15 @@ class TruePlaces:
         self.done: dict[str, DoneAt] = {}
         """By task that robots have taken for done."""
 
-    def begins(self, task: Task, robots: Iterable[str]) -> None:
-        """Robots begin a task."""
+    def follow(self, events: Iterable[ExecutionEvent], tasks: Mapping[str, Task]) -> Iterator[OtherEvent]:
+        """Follow what robots tell of tasks, by id, while they stand where they did it; yields what is not done."""
+        for event in events:
+            if isinstance(event, Starts):
+                self._begin(tasks[event.task], event.team or (event.robot,))
+            elif isinstance(event, Ends) and (off := self._end(event.task)) is not None:
+                yield off
+
+    def _begin(self, task: Task, robots: Iterable[str]) -> None:
         self._under_way[task.id] = task
         self._farthest[task.id] = dict.fromkeys(robots, 0.0)
         pickup = None if task.action is None else task.action.pickup
@@ -81,8 +89,7 @@ class TruePlaces:
             if not ends_at_its_place(task):
                 self._note(task)
 
-    def ends(self, name: str) -> OtherEvent | None:
-        """Robots take a task for done; returns what happened if it is not."""
+    def _end(self, name: str) -> OtherEvent | None:
         task = self._under_way.pop(name, None)
         if task is None:
             return None

@@ -17,17 +17,22 @@ from muster.perception.camera_observer import CameraObserver, Observation
 from muster.perception.cameras.images import Image
 from muster.perception.detection import TagDetector
 from muster.perception.geometric_detection import MIDDLE_SHARE, GroundTag, sightings_of
+from muster.perception.point_search import FoundPoint
 from muster.perception.tags import tag_pose
 
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """One image of one robot's camera: its time, the picture (None where none is rendered), and the observation."""
+    """One image of one robot's camera: its time, the picture (None where none is rendered), and the observation.
+
+    `finds` is all that the team has found by then.
+    """
 
     robot: str
     time_s: float
     image: Image | None
     observation: Observation
+    finds: tuple[FoundPoint, ...] = ()
 
 
 class Cameras(Protocol):
