@@ -233,7 +233,7 @@ class Simulation:
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
         if self._estimated is not None:
             report = replace(report, remarks=(*report.remarks, self._estimated.remark))
-        report = with_truth(with_found(report, self._camera_search), self._true_places.done)
+        report = with_truth(with_found(report, self._camera_search), self._executor.mission, self._true_places.done)
         return with_tracking(report, world)
 
     @property

@@ -148,7 +148,7 @@ class TruePlaces:
         return self._world.ports[robot].body
 
 
-def with_truth(report: Report, done: Mapping[str, DoneAt]) -> Report:
+def with_truth(report: Report, mission: Mission, done: Mapping[str, DoneAt]) -> Report:
     """A report in which tasks are done that are truly done; the others are lost, with how far off they were done."""
     off = {name: at.reason for name, at in done.items() if not at.is_done and name in report.tasks_done}
     rows = tuple(
@@ -156,4 +156,9 @@ def with_truth(report: Report, done: Mapping[str, DoneAt]) -> Report:
         for row in report.tasks
     )
     true = tuple(name for name in report.tasks_done if name not in off)
-    return replace(report, tasks=rows, tasks_done=true, tasks_lost=(*report.tasks_lost, *off.items()))
+    orders = report.orders
+    if orders is not None:
+        came = len(off.keys() - {task.id for task in mission.tasks})
+        orders = replace(orders, done=orders.done - came, lost=orders.lost + came)
+    lost = (*report.tasks_lost, *off.items())
+    return replace(report, tasks=rows, tasks_done=true, tasks_lost=lost, orders=orders)

@@ -101,7 +101,7 @@ def negotiate_and_carry_out(
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
         if isinstance(robots, EstimatedWorld):
             report = replace(report, remarks=(*report.remarks, robots.remark))
-        report = with_truth(with_found(report, camera_search), robot_bodies.true_places.done)
+        report = with_truth(with_found(report, camera_search), mission, robot_bodies.true_places.done)
         report = with_tracking(report, bodies)
         if recorder is not None:
             recorder.on_report(report.as_dict())
