@@ -36,7 +36,7 @@ class LevelCamera:
     pixel_px: float
 
     def seen(
-        self, sightings: Sequence[Sighting], height_m: float, roll: float, pitch: float, late_m: Floats | None = None
+        self, sightings: Sequence[Sighting], height_m: float, roll: float, pitch: float, moved: Floats | None = None
     ) -> list[tuple[int, Seen]]:
         """Return the tags in a picture by id, and where the robot sees them.
 
@@ -44,9 +44,9 @@ class LevelCamera:
         ----------
         height_m, roll, pitch
             what the robot takes them to be.
-        late_m
-            (2,) metres ahead and to the left that the robot went since the picture was taken, if it matches it with
-            a later pose.
+        moved
+            (3,) metres ahead and to the left, and radians, by which the robot moved since the picture was taken, if it
+            matches it with a later pose: by so much what it sees may be off.
         """
         if not sightings:
             return []
@@ -56,8 +56,9 @@ class LevelCamera:
         ways = places - view.position
         near = np.linalg.norm(ways, axis=1) <= FARTHEST_M  # False where NaN
         covariances = ground_covariance(view, pixels[near], Uncertainty(pixel_px=self.pixel_px), self.ground_m)
-        if late_m is not None:
-            covariances = covariances + np.outer(late_m, late_m)
+        if moved is not None:
+            passed = moved[2] * np.column_stack([-places[near, 1], places[near, 0]]) + moved[:2]
+            covariances = covariances + (passed**2).sum(axis=1)[:, None, None] * np.eye(2)
         by_height = ways[near, :2] / (view.position[2] - self.ground_m)
         by_tilt = by_turns(ways[near])[:, :, :2]
         tags = [sighting.tag for sighting, is_near in zip(sightings, near, strict=True) if is_near]

@@ -18,7 +18,7 @@ import numpy as np
 from muster.execution.reports.report import FoundReport, Report
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission, Robot
-from muster.motion.frames import angles
+from muster.motion.frames import angles, wrapped
 from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
 from muster.perception.camera import View, intrinsics_of_mission, mount_of_mission
@@ -42,7 +42,8 @@ OnLook = Callable[[Look], None]
 class _Eye:
     """One robot's camera: its number in the world, when it looks next, and its images that are still on the way.
 
-    `images` are the times at which they arrive, and the true poses (4, 4) from which they were taken.
+    `images` are the times at which they arrive, the true poses (4, 4) from which they were taken, and where the robot
+    took itself to be then.
     """
 
     number: int
@@ -51,7 +52,7 @@ class _Eye:
     pose: PoseEstimate
     period_s: float
     due_s: float
-    images: deque[tuple[float, Floats]] = field(default_factory=deque)
+    images: deque[tuple[float, Floats, Telemetry | None]] = field(default_factory=deque)
 
 
 class CameraSearch:
@@ -106,7 +107,7 @@ class CameraSearch:
     def due_s(self) -> float:
         """When a camera looks next, or an image arrives."""
         looks = [eye.due_s for eye in self._eyes.values()]
-        arrivals = [arrives_s for eye in self._eyes.values() for arrives_s, _ in eye.images]
+        arrivals = [arrives_s for eye in self._eyes.values() for arrives_s, *_ in eye.images]
         return min([*looks, *arrivals], default=math.inf)
 
     @property
@@ -160,14 +161,15 @@ class CameraSearch:
             if eye.due_s <= now + 1e-9:
                 eye.due_s += eye.period_s * max(1, math.ceil((now - eye.due_s) / eye.period_s - 1e-9))
                 body = true_body(self._world.frames[k], self._world.axes[k])
-                eye.images.append((now + self._noise.camera_delay_s, body))
+                then = self._robots.ports[robot].telemetry()
+                eye.images.append((now + self._noise.camera_delay_s, body, then))
             if not eye.images or eye.images[0][0] > now + 1e-9:
                 continue
-            _, body = eye.images.popleft()
+            _, body, then = eye.images.popleft()
             said = None if robot in unheard else self._robots.ports[robot].telemetry()
             if said is None or said.time_s < now - self._world.dt_s / 2:
                 continue
-            look, finds = self._seen(eye, body, said, now)
+            look, finds = self._seen(eye, body, then or said, said, now)
             self._on_look(look)
             for remark in look.observation.remarks:  # what is so in many images is said once
                 self._remarks.setdefault((robot, remark.partition(": ")[2]), remark)
@@ -175,8 +177,13 @@ class CameraSearch:
                 event = self.tasks.event(find, now)  # first: it names the task
                 yield {name: value for name, value in asdict(self._told(find)).items() if name != "found_s"}, event
 
-    def _seen(self, eye: _Eye, body: Floats, said: Telemetry, now: float) -> tuple[Look, tuple[FoundPoint, ...]]:
-        """What is in a picture that was taken from a true pose (4, 4), and what is found by it."""
+    def _seen(
+        self, eye: _Eye, body: Floats, then: Telemetry, said: Telemetry, now: float
+    ) -> tuple[Look, tuple[FoundPoint, ...]]:
+        """What is in a picture that was taken from a true pose (4, 4), and what is found by it.
+
+        The robot took itself to be where it said `then`; it matches the picture with where it is now.
+        """
         world, k, tilt_rad = self._world, eye.number, self._noise.attitude_rad
         roll, pitch = angles(world.axes[k])[:2] + self._random.normal(0.0, tilt_rad, 2)
         x, y, z = np.array(said.position) + world.frames[k] - world.positions[k]
@@ -184,16 +191,10 @@ class CameraSearch:
         observer = replace(eye.observer, uncertainty=_uncertainty(estimate, eye.level.pixel_px, tilt_rad))
         view = View.from_body(observer.intrinsics, body, observer.mount)
         look = self._sight.look(observer, view, [x, y, z, roll, pitch, said.heading], now)
-        late_m = self._late_m(said) if self._noise.camera_delay_s > 0 else None
-        seen = eye.level.seen(look.observation.sightings.all, z, roll, pitch, late_m)
+        seen = eye.level.seen(look.observation.sightings.all, z, roll, pitch, _moved(then, said))
         estimate, finds = self.search.take(observer.robot, estimate, seen, look.observation.estimates, now)
         eye.pose.learn(estimate)
         return replace(look, finds=self.search.finds), finds
-
-    def _late_m(self, said: Telemetry) -> Floats:
-        """How far a robot has gone ahead and to the left since the picture was taken."""
-        c, s = math.cos(said.heading), math.sin(said.heading)
-        return np.array([[c, s], [-s, c]]) @ (self._noise.camera_delay_s * np.array(said.velocity[:2]))
 
     def refused(self, task: str) -> None:
         """What was found did not become this task after all."""
@@ -275,3 +276,10 @@ def with_found(report: Report, camera_search: CameraSearch | None) -> Report:
     if camera_search is None:
         return report
     return replace(report, found=camera_search.found, remarks=(*report.remarks, *camera_search.remarks))
+
+
+def _moved(then: Telemetry, said: Telemetry) -> Floats:
+    """How a robot has moved, (3,): metres ahead and to the left, in its axes now, and radians."""
+    c, s = math.cos(said.heading), math.sin(said.heading)
+    east, north = said.position[0] - then.position[0], said.position[1] - then.position[1]
+    return np.array([c * east + s * north, c * north - s * east, float(wrapped(said.heading - then.heading))])

@@ -141,8 +141,8 @@ class Consistencies:
             runs = [found[job] for job in self.jobs(effort) if job.setting == setting]
             rows.append({"setting": setting, "runs": len(runs), **_cells(runs)})
         notes = (
-            f"Mission {MISSION} in the kinematic world: three drones search for thirty tags for {UNTIL_S:g} s, and steer by "
-            "their estimates. "
+            f"Mission {MISSION} in the kinematic world: three drones search for thirty tags for {UNTIL_S:g} s, and "
+            "steer by their estimates. "
             "poses, places: squared error in units of the covariance by degree of freedom, mean of all runs: 1 of an "
             "estimate that knows its errors, more of one that is too sure. Poses: x, y and heading, as errors of a "
             "turn and a shift of the map.",
