@@ -32,6 +32,9 @@ LOOK_S, FIRST_S = 2.0, 10.0
 SURE = 3.0
 """In standard deviations along the worst direction: an error that is larger is rare, and counted."""
 
+RADIUS = 1.96
+"""Standard deviations that the radius which holds 95 % has at least."""
+
 SETTINGS: Mapping[str, tuple[tuple[str, ...] | None, Noise]] = {
     "odometry 2 %": (None, Noise(odometry=0.02)),
     "odometry 5 %": (None, Noise(odometry=0.05)),
@@ -147,8 +150,8 @@ class Consistencies:
             "estimate that knows its errors, more of one that is too sure. Poses: x, y and heading, as errors of a "
             "turn and a shift of the map.",
             f"beyond {SURE:g} sigma: share of places that are farther off than {SURE:g} standard deviations along the "
-            "worst direction; a Gaussian has 0.3 % along one direction, 1.1 % where all are alike. twice: tags that "
-            "have more than one place.",
+            "worst direction; a Gaussian has 0.3 % along one direction, 1.1 % where all are alike. thrice: places "
+            "that are farther off than three times the radius that holds 95 %. twice: tags that have more than one place.",
         )
         return Table.of_cells(self.number, "Do robots know how unsure they are?", rows, notes, decimals=3)
 
@@ -165,5 +168,6 @@ def _cells(runs: list[Consistency]) -> dict[str, Cell]:
         "off m": fmean(off),
         "sure to m": fmean(sure),
         f"beyond {SURE:g} sigma": f"{100 * beyond / len(off):.2f} %",
+        "thrice": sum(error > 3 * RADIUS * deviation for error, deviation in zip(off, sure, strict=True)),
         "twice": sum(count > 1 for run in runs for count in run.found),
     }
