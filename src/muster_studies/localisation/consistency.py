@@ -151,7 +151,7 @@ class Consistencies:
             "turn and a shift of the map.",
             f"beyond {SURE:g} sigma: share of places that are farther off than {SURE:g} standard deviations along the "
             "worst direction; a Gaussian has 0.3 % along one direction, 1.1 % where all are alike. thrice: places "
-            "that are farther off than three times the radius that holds 95 %. twice: tags that have more than one place.",
+            "that are farther off than three times the radius that holds 95 %. twice: tags at more than one place.",
         )
         return Table.of_cells(self.number, "Do robots know how unsure they are?", rows, notes, decimals=3)
 
