@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from muster.execution import Executor, Recorder, Status, broken_off, report_of, status_of, travel_of, way_of
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.mission.supported_features import require_carried_out
+from muster.mission.supported_features import require_supported
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
@@ -82,7 +82,7 @@ class Simulation:
         if begun is None:  # later each robot stands anywhere, and a leg is checked when it is sent
             require_open_ways(mission, plan)
         there = mission if begun is None else begun.standing(mission)
-        require_carried_out(mission)
+        require_supported(mission)
         require_geometry(mission, "a simulated run")
         robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         travel, seed = travel_of(mission, robot_paths), request.seed
