@@ -11,7 +11,7 @@ import numpy as np
 
 from muster.perception.errors import AirErrors, GroundErrors
 from muster.perception.pose_tracking import AirTracker, GroundTracker
-from tests.perception.test_tracking import flown, mission
+from tests.perception.test_pose_tracking import flown, mission
 from tests.running.test_state_estimation import watched
 
 SEEDS = range(5)

@@ -7,6 +7,7 @@ import numpy.typing as npt
 from muster.perception.camera import Intrinsics, View
 from muster.perception.camera_observer import CameraObserver
 from muster.perception.detection import TagDetector
+from muster.perception.localisation import Uncertainty
 from muster.simulation.cameras import Look
 from muster_physics.rendering import Lens, Renderer, Shown
 
@@ -26,6 +27,11 @@ class RenderedCameras:
         self.detector = TagDetector()
         self._world = world
         self._renderers: dict[tuple[int, int], Renderer] = {}
+
+    @property
+    def pixel_px(self) -> float:
+        """See `Cameras`; what a detector finds is off by less."""
+        return Uncertainty().pixel_px
 
     def look(self, observer: CameraObserver, view: View, body: npt.ArrayLike, now: float) -> Look:
         """See `Cameras`."""

@@ -27,6 +27,7 @@ from muster.perception.estimates import RawEstimates
 from muster.perception.found_tasks import FoundTasks
 from muster.perception.localisation import Uncertainty
 from muster.perception.point_search import FoundCriteria, FoundPoint, PointSearch
+from muster.perception.points_of_interest import radius_95
 from muster.perception.scan_obstacles import seen_on_map
 
 Locate = Literal["ground", "size"]
@@ -213,6 +214,7 @@ def _row(find: FoundPoint, task: str | None) -> dict[str, Any]:
         "position": [round(float(c), 4) for c in point.position],
         "covariance": [[float(c) for c in row] for row in point.covariance],
         "deviation_m": round(math.sqrt(float(np.linalg.eigvalsh(point.covariance)[-1])), 4),
+        "sure_to_m": round(radius_95(point.covariance[:2, :2]), 4),
         "sightings": point.sightings,
         "robots": list(point.robots),
         "found_s": find.at_s,

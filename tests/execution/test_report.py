@@ -78,6 +78,8 @@ def test_it_prints_what_the_command_promises():
             "waiting_s": 0,
             "team": [],
             "lateness_s": 0,
+            "done_m_off": None,
+            "within_m": None,
         },
         {
             "task": "y",
@@ -87,6 +89,8 @@ def test_it_prints_what_the_command_promises():
             "waiting_s": pytest.approx(5, abs=0.03),
             "team": [],
             "lateness_s": 0,
+            "done_m_off": None,
+            "within_m": None,
         },
     ]
 

@@ -13,16 +13,11 @@ from muster.execution import Executor
 from muster.mission.plan import Plan, Route
 from muster.motion.frames import wrapped
 from muster.motion.port import Waypoint
-from muster.perception import ground_fusion
-from muster.perception.pose_tracking import AirTracker, GroundTracker
+from muster.perception.joint_estimate import BIAS
+from muster.running.localisation import Localisation, sensors_of
+from muster.running.reckoning_noise import LEAST, reckoning_errors
 from muster.running.simulation import carry_out
-from muster.running.state_estimation import (
-    EstimatedWorld,
-    FusedPorts,
-    air_errors,
-    ground_errors,
-    with_state_estimation,
-)
+from muster.running.state_estimation import EstimatedWorld, LocalisedPorts, with_state_estimation
 from muster.running.worlds import world_named
 from muster.simulation import KinematicWorld, Noise
 
@@ -34,10 +29,12 @@ WORLDS = ["kinematic", pytest.param("physics", marks=needs_physics)]
 class Watched(EstimatedWorld):
     """Keeps by how much robots are off at each step, as they say and fused, and what their filters make of it."""
 
-    def __init__(self, world):
+    def __init__(self, world, mission):
         self.places, self.headings, self.innovations = [], [], {name: [] for name in world.ports}
         self.bodies = world
-        super().__init__(world, FusedPorts(world), steered=False)
+        localisation = Localisation(sensors_of(("odometry", "inertial")), mission, 0, told=True)
+        self.freedom = [0, 1, 2, 3] if mission.dimensions == 3 else [0, 1, 3]
+        super().__init__(world, LocalisedPorts(world, localisation), steered=False)
 
     def _listen(self):
         super()._listen()
@@ -48,14 +45,16 @@ class Watched(EstimatedWorld):
         facing = self.bodies.headings
         self.headings.append([wrapped(np.array([one.heading for one in told]) - facing) for told in (said, fused)])
         for name, port in self.ports.items():
-            if port.tracker.fix is not None:
-                self.innovations[name].append(port.tracker.fix.nis)
+            fix = port.estimate.told_poses.fix
+            if fix is not None:
+                off, spread = fix.innovation[self.freedom], fix.innovation_covariance[np.ix_(*[self.freedom] * 2)]
+                self.innovations[name].append(float(off @ np.linalg.solve(spread, off)))
 
 
 def watched(name, world, noise=NOISE, seed=1):
     """A plan of a shipped mission carried out to the end."""
     mission = muster.load(name)
-    hearing = Watched(bodies := world_named(world)(mission, seed=seed, noise=noise))
+    hearing = Watched(bodies := world_named(world)(mission, seed=seed, noise=noise), mission)
     executor = Executor(mission, muster.solve(mission, iterations=100), hearing.ports)
     executor.tick(0.0)
     while not executor.done:
@@ -78,20 +77,19 @@ def test_fused_poses_are_nearer_to_the_truth_by_more_than_half(name, world):
     assert said == pytest.approx(0.05, rel=0.15)
     assert (fused < 0.3 * said).all()
     for nis in hearing.innovations.values():
-        freedom = mission.dimensions * len(nis)
+        freedom = len(hearing.freedom) * len(nis)
         from scipy.stats import chi2  # takes half a second to import
 
         low, high = chi2.ppf([0.0005, 0.9995], freedom)
         assert low < sum(nis) < high
 
 
-def test_filters_learn_what_wheels_slip_and_gyros_have_too_much():
+def test_filters_learn_the_bias_of_gyros():
     noise = replace(NOISE, gyro_bias_radps=0.02, gyro_radps=0.005)
     _, hearing = watched("11T-2R", "kinematic", noise)
     for name, port in hearing.ports.items():
-        bias, slip = port.tracker.estimate.mean[[ground_fusion.BIAS, ground_fusion.SLIP]]
+        bias = port.estimate.estimate.mean[BIAS]
         assert bias == pytest.approx(hearing.bodies.ports[name]._bias_radps, abs=0.005)
-        assert slip == pytest.approx(0.025, abs=0.008)  # of 0 to 0.05 in each step
 
 
 @pytest.mark.long(keep=1)
@@ -153,8 +151,7 @@ def test_who_joins_is_fused_too():
     while not simulation.done:
         simulation.advance(1000.0)
     assert "new" in simulation.result().tasks_done
-    assert isinstance(simulation._robots.ports, FusedPorts)
-    assert isinstance(simulation._robots.ports["late"].tracker, GroundTracker)
+    assert simulation._robots.ports["late"].estimate.told_poses is not None
     assert math.dist(simulation.positions["late"], simulation._world.positions[2]) < 0.1
 
 
@@ -170,18 +167,31 @@ def test_it_hears_each_step_and_stops_where_something_was_passed():
     assert worlds[0].time_s == pytest.approx(5.0)
     assert list(fused.ports) == ["r"]
     assert len(fused.ports) == 1
-    assert isinstance(fused.ports["r"].tracker, AirTracker)
+    assert fused.ports["r"].estimate.told_poses is not None
 
 
-def test_a_filter_counts_with_the_worlds_noise_and_with_nothing_exact():
-    robot = Robot(id="r", position=(0.0, 0.0), kinematics="differential-drive", speed_mps=0.5, yaw_rate_radps=2.0)
-    ground = ground_errors(robot, replace(NOISE, odometry=0.1, gyro_radps=0.02), 0.1)
-    assert (ground.position_m, ground.heading_rad, ground.gyro_radps) == (0.1, 0.05, 0.02)
-    assert (ground.odometry_share, ground.odometry_slip) == (0.1, 0.05)
-    assert ground_errors(robot, NOISE, 0.1).odometry_share == pytest.approx(0.05 / 3)
-    air = air_errors(robot, replace(NOISE, accelerometer_mps2=0.3), 0.1)
-    assert (air.position_m, air.heading_rad, air.odometry_slip) == (0.1, 0.05, 0.05)
-    assert air.acceleration_mps2 > 0.3
-    for errors in (ground_errors(robot, Noise(), 0.1), air_errors(robot, Noise(), 0.1)):
-        assert (errors.position_m, errors.heading_rad) == (0.001, 0.001)
-        assert errors.gyro_radps == errors.gyro_bias_radps == 0.001
+@pytest.mark.parametrize("noise", [Noise(slip=0.3), Noise(odometry=0.05), Noise(slip=0.1, odometry=0.02)])
+def test_a_filter_counts_with_what_the_world_draws(noise):
+    """Means and deviations of what is travelled of what is counted, by drawing it."""
+    robot = Robot(id="r", position=(0.0, 0.0), radius_m=0.3, kinematics="differential-drive")
+    world = KinematicWorld(muster.Mission(robots=(robot,), tasks=()), noise=noise, seed=1)
+    world.ports["r"].send([Waypoint((2000.0, 0.0, 0.0))])
+    ways, turns = [], []
+    for _ in range(4000):
+        before = world.positions[0].copy()
+        world.step()
+        counted = world.ports["r"].odometry()
+        ways.append(math.dist(before, world.positions[0]) / counted.way_m[0])
+        turns.append(counted.turned_rad / counted.way_m[0])
+    errors = reckoning_errors(robot, world)
+    assert np.mean(ways) == pytest.approx(errors.way_kept, abs=4 * errors.way_share / math.sqrt(4000))
+    assert np.std(ways) == pytest.approx(errors.way_share, rel=0.05)
+    assert np.std(turns) * errors.turn_kept == pytest.approx(errors.turn_per_m, rel=0.05)
+
+
+def test_an_exact_world_leaves_nothing_to_count_with_and_bodies_skid():
+    robot = Robot(id="r", position=(0.0, 0.0))
+    exact = reckoning_errors(robot, KinematicWorld(muster.Mission(robots=(robot,), tasks=())))
+    assert (exact.way_kept, exact.turn_kept) == (1.0, 1.0)
+    assert max(exact.way_share, exact.turn_share, exact.slip, exact.gyro_radps) < 1e-5
+    assert min(LEAST.way_share, LEAST.turn_share, LEAST.slip, LEAST.skid, LEAST.gyro_radps) > 5e-4

@@ -198,6 +198,12 @@ class Work(RuleKeys, bearer="task"):
         beside="delivers",
     )
     duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
+    within_m: float | None = spec(
+        Number(above=0),
+        "how far from its true place it may be done, where the world knows that; by default by its action",
+        default=None,
+        if_used=True,
+    )
     priority: float = spec(Number(above=0), "weight among the tasks completed", default=1.0)
     only_robots: tuple[str, ...] | None = spec(
         Many(Text(), minimum=1), "ids of the only robots that may do it", default=None

@@ -63,16 +63,21 @@ class GroundErrors(_Deviations):
 
 @dataclass(frozen=True, kw_only=True)
 class ReckoningErrors(_Deviations):
-    """Errors of dead reckoning, for robots of all kinds: standard deviations of independent errors.
+    """Errors of dead reckoning, for robots of all kinds: standard deviations of independent errors, and two means.
 
     Parameters
     ----------
+    way_kept, turn_kept
+        the share of the counted way, and of the counted turn, that is travelled in the mean.
     way_share
-        of the way that odometry counts in a step, in each direction.
+        of the way that odometry counts in a step, along it.
+    aside_share
+        of the same, in each direction.
     turn_share, turn_per_m
         of the turn that it counts in a step: a share of it, and radians for each metre of way; they add as variances.
-    slip
-        of the share of what odometry counts that is never travelled nor turned, at the beginning.
+    slip, skid
+        of the share of the counted way, and of the counted turn, that is never travelled beside `way_kept` and
+        `turn_kept`, at the beginning.
     gyro_radps, gyro_bias_radps, gyro_walk
         as in `GroundErrors`.
 
@@ -82,10 +87,14 @@ class ReckoningErrors(_Deviations):
         if one is negative or not finite.
     """
 
+    way_kept: float = 1.0
+    turn_kept: float = 1.0
     way_share: float = 0.01
+    aside_share: float = 0.01
     turn_share: float = 0.01
     turn_per_m: float = 0.02
     slip: float = 0.02
+    skid: float = 0.02
     gyro_radps: float = 0.01
     gyro_bias_radps: float = 0.01
     gyro_walk: float = 1e-4

@@ -42,6 +42,10 @@ class FoundTasks:
         """The task that a find has become."""
         return self._tasks.get((find.tag, find.number))
 
+    def tag_of(self, task: str) -> int | None:
+        """The tag of the find that has become a task; None: no find has."""
+        return next((tag for (tag, _), name in self._tasks.items() if name == task), None)
+
     def refused(self, task: str) -> None:
         """What was found did not become this task after all."""
         self._tasks = {find: name for find, name in self._tasks.items() if name != task}

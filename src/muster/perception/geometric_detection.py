@@ -20,6 +20,9 @@ from muster.perception.tags import CORNERS
 LEAST_PX = 16.0
 """The pixels across its black square with which a tag is found in every image (docs/perception.md)."""
 
+MIDDLE_SHARE = 0.5
+"""Error of a tag's middle as a share of that of its corners: it is the middle of four."""
+
 
 @dataclass(frozen=True, eq=False)
 class GroundTag:
@@ -49,7 +52,7 @@ def _sighting(tag: GroundTag, view: View, random: np.random.Generator, corner_px
     if sides.min() < LEAST_PX:
         return None
     centre = view.project(tag.pose[None, :3, 3])[0]
-    off = random.normal(0.0, corner_px, (5, 2)) * ([[0.5]] + [[1.0]] * 4)  # the middle is that of four corners
+    off = random.normal(0.0, corner_px, (5, 2)) * ([[MIDDLE_SHARE]] + [[1.0]] * 4)
     return Sighting(tag.id, centre + off[0], corners + off[1:], corrected=0, margin=100.0)
 
 

@@ -202,7 +202,12 @@ def extended_correction(
 
 def gated(estimate: Estimate, correction: Correction) -> Estimate:
     """The corrected estimate; the estimate as it was where the innovation is larger than chance makes it (`GATES`)."""
-    return correction.estimate if correction.nis <= GATES[len(correction.innovation)] else estimate
+    return correction.estimate if is_expected(correction.nis, len(correction.innovation)) else estimate
+
+
+def is_expected(nis: float, freedom: int) -> bool:
+    """Whether chance explains a normalised innovation squared of so many degrees of freedom (`GATES`)."""
+    return nis <= GATES[freedom]
 
 
 def require_seconds(dt: float) -> None:

@@ -64,15 +64,26 @@ def ground_covariance(
     """
     places = on_ground(view, pixels, ground_m)
     ways = places - view.position  # d; the place is c + d, and where d changes it slides back along d onto the plane
-    slide = np.zeros((len(ways), 2, 3))
-    slide[:, :, :2] = np.eye(2)
-    slide[:, :, 2] = -ways[:, :2] / ways[:, 2:]
+    slide = _slide(ways)
     depth = ways @ view.rotation[:, 2]
     per_pixel = depth[:, None, None] * (view.rotation[:, :2] / (view.intrinsics.fx, view.intrinsics.fy))
-    turns = uncertainty.angle_rad * slide @ _cross(ways)
+    turns = by_turns(ways) * uncertainty.angle_rad
     steps = uncertainty.pixel_px * slide @ per_pixel
     shifts = uncertainty.position_m * slide
     return np.asarray(sum(part @ np.swapaxes(part, 1, 2) for part in (turns, steps, shifts)))
+
+
+def by_turns(ways: Floats) -> Floats:
+    """(n, 2, 3) the derivative of places on the ground, ways (n, 3) from the camera, by small turns of the camera."""
+    return _slide(ways) @ _cross(ways)
+
+
+def _slide(ways: Floats) -> Floats:
+    """(n, 2, 3) the derivative of places on the ground by the camera, from which ways (n, 3) lead to them."""
+    slide = np.zeros((len(ways), 2, 3))
+    slide[:, :, :2] = np.eye(2)
+    slide[:, :, 2] = -ways[:, :2] / ways[:, 2:]
+    return slide
 
 
 @dataclass(frozen=True, eq=False)

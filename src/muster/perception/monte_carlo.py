@@ -79,7 +79,7 @@ class MonteCarloParameters:
     way_share: float = 0.1
     turn_share: float = 0.1
     turn_per_m: float = 0.05
-    good_fit: float = 0.6
+    good_fit: float = 0.8
     fit_share: float = 0.3
 
     def __post_init__(self) -> None:

@@ -41,7 +41,7 @@ class FoundCriteria:
 
     sightings: int = 3
     deviation_m: float = 0.15
-    moved_m: float = 0.25
+    moved_m: float = 0.1
     apart_m: float = 1.0
     independent_after_s: float = 5.0
 

@@ -25,6 +25,9 @@ from muster.mission.values.arrays import Floats
 from muster.perception.clusters import LONE, Labels
 from muster.perception.estimates import NO_TAG, RawEstimates
 
+_RADII_95 = ((0.0, 0.2, 0.4, 0.6, 0.8, 1.0), (1.960, 1.970, 2.005, 2.081, 2.230, 2.448))
+"""Ratios of the least to the greatest deviation, and the radius, in greatest deviations, that holds 95 %."""
+
 
 @dataclass(frozen=True, eq=False)
 class PointOfInterest:
@@ -67,6 +70,16 @@ def points_of_interest(
         raise ParameterError(f"independent_after_s: {independent_after_s}; expected seconds of at least 0")
     clusters = [np.flatnonzero(labels == label) for label in np.unique(labels[labels != LONE])]
     return tuple(_point(raw, members, independent_after_s) for members in clusters if len(members) >= least)
+
+
+def radius_95(covariance: Floats) -> float:
+    """Return the radius of the circle that holds a Gaussian error of covariance (2, 2) with a probability of 95 %.
+
+    To 1 %: the Gaussian is integrated for some ratios of both deviations (`_RADII_95`).
+    """
+    least, greatest = np.sqrt(np.maximum(np.linalg.eigvalsh(covariance), 0.0)).tolist()
+    ratio = least / greatest if greatest > 0 else 0.0
+    return float(greatest * np.interp(ratio, *_RADII_95))
 
 
 def remarks(points: tuple[PointOfInterest, ...], seen: Collection[int] = ()) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from muster.mission.model import Mission
 from muster.perception.estimates import RawEstimates
 from muster.perception.matching import ErrorTable, error_table
-from muster.perception.point_search import PointSearch
+from muster.perception.point_search import FoundPoint
 from muster.perception.points_of_interest import PointOfInterest
 from muster.report.figures.canvas import add_title, frame_of_map, limits, new_axes
 from muster.report.figures.files import save_figure
@@ -36,11 +36,13 @@ class FoundByCameras:
     """Receives each look of a camera (`on_look`), and draws what was found."""
 
     def __init__(self) -> None:
-        self._search = PointSearch()
+        self._raw: list[RawEstimates] = []
+        self._finds: tuple[FoundPoint, ...] = ()
 
     def __call__(self, look: Look) -> None:
         """Take in the estimates of one camera image."""
-        self._search.take(look.observation.estimates, look.time_s)
+        self._raw.append(look.observation.estimates)
+        self._finds = look.finds
 
     def plot(self, mission: Mission, file: Path) -> None:
         """Draw a map of all estimates, of what was found and of what is there ([tcf-thesis], Figure 6.4).
@@ -52,11 +54,11 @@ class FoundByCameras:
         MissingExtraError
             if matplotlib is not installed.
         """
-        points = [find.point for find in self._search.finds]
+        points, raw = [find.point for find in self._finds], RawEstimates.joined(self._raw)
         truth = _named(mission)
         table = error_table([point.position for point in points], truth, farthest_m=FARTHEST_M)
         title = f"{mission.name}: found by cameras"
-        save_figure(plot_found(self._search.raw, points, table, truth, title), file)
+        save_figure(plot_found(raw, points, table, truth, title), file)
 
 
 def plot_found(

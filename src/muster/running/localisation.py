@@ -17,13 +17,14 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.motion.grid import Floats
 from muster.motion.map_world import Body, World, body_of
 from muster.motion.port import Telemetry
 from muster.perception import dead_reckoning
-from muster.perception.dead_reckoning import HEADING, X, Y, Z
 from muster.perception.errors import ReckoningErrors
-from muster.perception.kalman import Estimate
-from muster.simulation import Noise, SimulatedWorld
+from muster.perception.joint_estimate import JointEstimate
+from muster.running.reckoning_noise import reckoning_errors
+from muster.simulation import SimulatedWorld
 from muster.simulation.landmark_sensors import LaserLandmarks, LaserParameters, TagCamera, TagParameters
 from muster.simulation.map_scans import MapScanParameters, MapScans, ScannedMap
 from muster.simulation.pose_sensors import (
@@ -33,6 +34,7 @@ from muster.simulation.pose_sensors import (
     SatelliteParameters,
     Satellites,
     SensorParameters,
+    ToldPoses,
 )
 
 ODOMETRY, INERTIAL, TAGS, LASERS, SCANS, MOTION_CAPTURE, GPS, RTK = (
@@ -62,12 +64,8 @@ Localise = str | Sequence[str] | Mapping[str, Mapping[str, float | str]]
 
 START_M, START_RAD = 0.001, 0.001
 """Within which robots know their poses at the beginning: standard deviations."""
-LEAST_SHARE, LEAST_TURN_SHARE, LEAST_TURN_PER_M = 0.01, 0.05, 0.05
-"""What odometry errs by in a filter's eyes where there is no noise: nothing is exact."""
-LEAST_SLIP = 0.02
-LEAST_RADPS = 0.001
-_TRACK_RADII, _NOMINAL_M = 0.287 / 0.3, 0.3
-"""As in `core/crowd/crowd_robot.hpp`: between the wheels, in radii; and the radius in place of one of 0."""
+LEAST_M, LEAST_RAD = 1e-4, 1e-4
+"""The same of poses that are exact."""
 
 
 def sensors_of(localise: Localise) -> Mapping[str, SensorParameters]:
@@ -138,11 +136,12 @@ def require_possible(sensors: Mapping[str, SensorParameters], mission: Mission) 
 
 @dataclass(frozen=True)
 class Localisation:
-    """The sensors of all robots of a mission."""
+    """The sensors of all robots of a mission; with `told` the noisy poses of telemetry correct odometry, too."""
 
     sensors: Mapping[str, SensorParameters]
     mission: Mission
     seed: int
+    told: bool = False
     _maps: dict[Body, ScannedMap] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def of(self, world: SimulatedWorld, robot: str) -> PoseEstimate:
@@ -154,7 +153,8 @@ class Localisation:
         body = world.ports[robot].body
         others = [self._made(how, world, body) for how in self.sensors.values()]
         correcting = [sensor for sensor in others if sensor is not None]
-        return ReckonedPose(world, robot, correcting, inertial=INERTIAL in self.sensors)
+        told = ToldPoses(world, robot) if self.told else None
+        return ReckonedPose(world, robot, correcting, told, inertial=INERTIAL in self.sensors)
 
     def _made(self, how: SensorParameters, world: SimulatedWorld, robot: Robot) -> PoseSensor | None:
         if isinstance(how, MotionCaptureParameters):
@@ -164,7 +164,7 @@ class Localisation:
         if isinstance(how, LaserParameters):
             return LaserLandmarks(world, robot.id, self.mission.landmarks, how, self.seed)
         if isinstance(how, MapScanParameters):
-            return MapScans(world, robot.id, self._map_of(robot), how, reckoning_errors(robot, world.noise), self.seed)
+            return MapScans(world, robot.id, self._map_of(robot), how, reckoning_errors(robot, world), self.seed)
         if isinstance(how, TagParameters) and robot.camera is not None:
             return TagCamera(world, robot, robot.camera, self.mission.tags, how, self.seed)
         return None
@@ -191,6 +191,14 @@ class PoseEstimate(ABC):
     def update(self) -> None:
         """Take in what sensors measured in the last step."""
 
+    @abstractmethod
+    def looking(self) -> JointEstimate:
+        """The estimate now, with all marks that were learned."""
+
+    @abstractmethod
+    def learn(self, estimate: JointEstimate) -> None:
+        """Take over an estimate with what was seen."""
+
     def told(self, said: Telemetry) -> Telemetry:
         """Telemetry with the estimated pose, and the velocity by odometry in its axes."""
         counted = self._port.odometry()
@@ -204,15 +212,30 @@ class PoseEstimate(ABC):
 
 
 class ReckonedPose(PoseEstimate):
-    """Dead reckoning from where the robot truly starts, and what corrects it."""
+    """Dead reckoning from where the robot truly starts, and what corrects it.
 
-    def __init__(self, world: SimulatedWorld, robot: str, correcting: Sequence[PoseSensor], *, inertial: bool) -> None:
+    With noisy poses that are `told`, it begins with the first of these.
+    """
+
+    def __init__(
+        self,
+        world: SimulatedWorld,
+        robot: str,
+        correcting: Sequence[PoseSensor],
+        told: ToldPoses | None = None,
+        *,
+        inertial: bool,
+    ) -> None:
         super().__init__(world, robot)
-        self._correcting, self._inertial = correcting, inertial
-        self._errors = reckoning_errors(self._port.body, world.noise)
-        spread = (START_M, START_M, START_M, START_RAD)
-        self.estimate: Estimate = dead_reckoning.standing_at(self.pose, spread, self._errors)
-        self._correct()
+        self._correcting, self._inertial, self.told_poses = [*correcting, *([told] if told else [])], inertial, told
+        self._errors = reckoning_errors(self._port.body, world)
+        start, spread = self.pose, np.array([START_M, START_M, START_M, START_RAD])
+        if told is not None:
+            start, spread = told.start, np.array(told.deviations)
+        self.estimate: JointEstimate = dead_reckoning.standing_at(start, spread, self._errors)
+        if told is None:
+            self._correct()
+        self._take_pose()
 
     def update(self) -> None:
         """See `PoseEstimate`."""
@@ -221,19 +244,56 @@ class ReckonedPose(PoseEstimate):
         self.estimate = dead_reckoning.moved(self.estimate, self._port.odometry(), self._errors, turning)
         self._correct()
 
+    def looking(self) -> JointEstimate:
+        """See `PoseEstimate`."""
+        return self.estimate
+
+    def learn(self, estimate: JointEstimate) -> None:
+        """See `PoseEstimate`."""
+        self.estimate = estimate
+        self._take_pose()
+
     def _correct(self) -> None:
         for sensor in self._correcting:
             self.estimate = sensor.corrected(self.estimate)
-        self.pose = self.estimate.mean[[X, Y, Z, HEADING]]
-        self.spread_m = math.sqrt((self.estimate.covariance[X, X] + self.estimate.covariance[Y, Y]) / 2)
+        self._take_pose()
+
+    def _take_pose(self) -> None:
+        self.pose = self.estimate.mean[:4]
+        self.spread_m = math.sqrt(float(np.square(self.estimate.deviations[:2]).mean()))
 
 
-class CapturedPose(PoseEstimate):
+class GivenPose(PoseEstimate):
+    """The true pose: of a robot that does not err about it."""
+
+    deviations: Floats = np.array([LEAST_M, LEAST_M, LEAST_M, LEAST_RAD])
+
+    def __init__(self, world: SimulatedWorld, robot: str) -> None:
+        super().__init__(world, robot)
+        self._estimate = dead_reckoning.standing_at(self.pose, self.deviations, ReckoningErrors())
+
+    def update(self) -> None:
+        """See `PoseEstimate`."""
+        self.pose = self._last()
+
+    def _last(self) -> Floats:
+        return np.array([*self._world.positions[self._number], self._world.headings[self._number]])
+
+    def looking(self) -> JointEstimate:
+        """See `PoseEstimate`; what the pose errs by is new each time."""
+        return self._estimate.with_pose(self._last(), self.deviations)
+
+    def learn(self, estimate: JointEstimate) -> None:
+        """See `PoseEstimate`; a pose that is given is not corrected."""
+        self._estimate = estimate
+
+
+class CapturedPose(GivenPose):
     """What motion capture measured last."""
 
     def __init__(self, world: SimulatedWorld, robot: str, capture: MotionCapture) -> None:
         super().__init__(world, robot)
-        self._capture = capture
+        self._capture, self.deviations = capture, capture.deviations
         self.spread_m = float(capture.deviations[0])
         self.update()
 
@@ -243,16 +303,5 @@ class CapturedPose(PoseEstimate):
         if measured is not None:
             self.pose = measured
 
-
-def reckoning_errors(robot: Robot, noise: Noise) -> ReckoningErrors:
-    """What dead reckoning of a robot counts with in a world with this noise."""
-    of_wheel = math.hypot(noise.slip / math.sqrt(12), noise.odometry)
-    half_track = _TRACK_RADII / 2 * (robot.radius_m or _NOMINAL_M)
-    return ReckoningErrors(
-        way_share=max(LEAST_SHARE, of_wheel),
-        turn_share=max(LEAST_TURN_SHARE, of_wheel / math.sqrt(2)),
-        turn_per_m=max(LEAST_TURN_PER_M, of_wheel / (math.sqrt(2) * half_track)),
-        slip=max(LEAST_SLIP, noise.slip),
-        gyro_radps=max(LEAST_RADPS, noise.gyro_radps),
-        gyro_bias_radps=max(LEAST_RADPS, noise.gyro_bias_radps),
-    )
+    def _last(self) -> Floats:
+        return self.pose

@@ -24,6 +24,7 @@ from muster.running.robots_in_traffic import RobotsInTraffic
 from muster.running.run_request import RunRequest
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.traffic_choice import manager_for
+from muster.running.true_places import TruePlaces, with_truth
 from muster.running.worlds import has_ability, world_named
 from muster.simulation import NO_NOISE, SimulatedWorld
 from muster.simulation.declaration import EXACT
@@ -120,12 +121,16 @@ class Simulation:
         if manager is not None:
             manager.expect(self._executor.outlook)
         self._camera_search = camera_search_for(
-            there, self._world, self._robots.ports, noise=request.noise, seed=seed, on_look=on_look
+            there, self._world, robots, noise=request.noise, seed=seed, on_look=on_look
         )
+        self._true_places = TruePlaces(there, self._world, robots, self._tag_of)
+        self._judged = self._executor.events.total
         self._recorder = recorder
         self._ahead = sorted(there.events, key=lambda event: event.at_s)
         if begun is not None and self._camera_search is not None:
             self._camera_search.resume(begun.bodies["found"])
+        if begun is not None:
+            self._true_places.resume(begun.bodies.get("done_at", ()))
         self._tick()
 
     @property
@@ -219,7 +224,8 @@ class Simulation:
             return None
         found = [] if self._camera_search is None else self._camera_search.snapshot()
         used = {name: state.used for name, state in self._executor.crew.items()}
-        return {**self._world.snapshot(), "found": found, "used": used}
+        done_at = self._true_places.snapshot()
+        return {**self._world.snapshot(), "found": found, "used": used, "done_at": done_at}
 
     def result(self) -> Report:
         """What it took, so far or in all."""
@@ -227,7 +233,8 @@ class Simulation:
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
         if self._estimated is not None:
             report = replace(report, remarks=(*report.remarks, self._estimated.remark))
-        return with_tracking(with_found(report, self._camera_search), world)
+        report = with_truth(with_found(report, self._camera_search), self._executor.mission, self._true_places.done)
+        return with_tracking(report, world)
 
     @property
     def status(self) -> Status:
@@ -255,8 +262,19 @@ class Simulation:
 
     def _tick(self) -> None:
         self._executor.tick(self.time_s)
+        self._judge()
         if self.done and self._recorder is not None:
             self._recorder.on_report(self.result().as_dict())
+
+    def _judge(self) -> None:
+        """Compare where work began, goes on and ended with where it was to be."""
+        events, self._judged = self._executor.events.since(self._judged), self._executor.events.total
+        for off in self._true_places.follow(events, self._executor.ledger.tasks):
+            self._executor.emit(off)
+        self._true_places.look()
+
+    def _tag_of(self, task: str) -> int | None:
+        return None if self._camera_search is None else self._camera_search.tasks.tag_of(task)
 
     @property
     def _look_due_s(self) -> float:

@@ -1,8 +1,8 @@
 """State estimation in simulated worlds: what robots take for their poses, in telemetry and for steering.
 
 Where robots err about their poses they go by what they know: an estimate from their sensors, updated in each step of
-the world. `localisation` makes it of sensors that a user names, `pose_tracking` of noisy poses in telemetry. Filters
-count with the world's own noise, as one does who knows the data sheets of his sensors.
+the world. `localisation` makes it of sensors that a user names, or of noisy poses in telemetry. Filters count with the
+world's own noise, as one does who knows the data sheets of his sensors (`reckoning_noise`).
 """
 
 from __future__ import annotations
@@ -14,13 +14,10 @@ from typing import Protocol
 import numpy as np
 
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission, Robot
+from muster.mission.model import Mission
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
-from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.motion.port import RobotPort, Telemetry, Waypoint
-from muster.perception.errors import AirErrors, GroundErrors
-from muster.perception.pose_tracking import AirTracker, FusedPort, GroundTracker, Tracker
 from muster.running.localisation import (
     INERTIAL,
     ODOMETRY,
@@ -31,14 +28,8 @@ from muster.running.localisation import (
     sensors_of,
 )
 from muster.running.run_request import ESTIMATE, POSES
-from muster.simulation import Noise, SimulatedWorld, WaypointPassed
+from muster.simulation import SimulatedWorld, WaypointPassed
 from muster.simulation.port import SimulatedPort
-
-LEAST_M, LEAST_RAD, LEAST_RADPS, LEAST_MPS = 0.001, 0.001, 0.001, 0.001
-"""What robots err by in a filter's eyes where there is no noise: nothing is exact."""
-LEAST_MPS2 = 0.02
-SLIP_SHARE = 1 / 3
-"""Of the greatest slip: what odometry errs by in a step, as slip is drawn evenly from 0."""
 
 
 class RobotsInWorld(Protocol):
@@ -69,8 +60,8 @@ def with_state_estimation(
     pose
         `true` or `estimate`; None: `estimate` where sensors are named, or noise makes estimates differ from the truth.
     localise
-        sensors, as `localisation.sensors_of` takes them; None: noisy poses in telemetry where the noise has any, else
-        odometry, with the gyro where the noise has it.
+        sensors, as `localisation.sensors_of` takes them; None: odometry, with the gyro where the noise has it, and
+        with the gyro and the noisy poses of telemetry where the noise has those.
 
     Raises
     ------
@@ -84,26 +75,20 @@ def with_state_estimation(
     if not localise:
         if not steered and not noise.of_pose:
             return world
-        if noise.of_pose:
-            return EstimatedWorld(world, FusedPorts(world), steered=steered)
-        localise = (ODOMETRY, INERTIAL) if noise.of_gyro else (ODOMETRY,)
-    sensors = sensors_of(localise)
-    require_possible(sensors, mission)
-    return EstimatedWorld(world, LocalisedPorts(world, Localisation(sensors, mission, seed)), steered=steered)
-
-
-class EstimatingPort(RobotPort, Protocol):
-    """A robot's port with an estimate of its pose."""
-
-    def believed(self, now: float) -> tuple[tuple[float, float, float, float], float] | None:
-        """The pose that the robot takes for its own now, and a standard deviation in metres; None: it knows none."""
-        ...
+        is_inertial = noise.of_gyro or noise.of_pose
+        sensors = sensors_of((ODOMETRY, INERTIAL) if is_inertial else (ODOMETRY,))
+        localisation = Localisation(sensors, mission, seed, told=noise.of_pose)
+    else:
+        sensors = sensors_of(localise)
+        require_possible(sensors, mission)
+        localisation = Localisation(sensors, mission, seed)
+    return EstimatedWorld(world, LocalisedPorts(world, localisation), steered=steered)
 
 
 class EstimatedWorld:
     """A world in which robots estimate their poses in every step, and steer by that if they are `steered` by it."""
 
-    def __init__(self, world: SimulatedWorld, ports: Mapping[str, EstimatingPort], *, steered: bool) -> None:
+    def __init__(self, world: SimulatedWorld, ports: LocalisedPorts, *, steered: bool) -> None:
         self._world, self._steered = world, steered
         self.ports = ports
         self._off: dict[str, list[float]] = {}
@@ -134,45 +119,10 @@ class EstimatedWorld:
     def _listen(self) -> None:
         truth = self._world.positions
         for number, (robot, port) in enumerate(self.ports.items()):
-            believed = port.believed(self._world.time_s)
-            if believed is None:
-                continue
-            pose, spread_m = believed
-            self._off.setdefault(robot, []).append(math.dist(pose[:3], truth[number]))
+            estimate = port.updated(self._world.time_s)
+            self._off.setdefault(robot, []).append(math.dist(estimate.pose[:3], truth[number]))
             if self._steered:
-                self._world.believe(robot, np.array(pose), spread_m)
-
-
-class FusedPorts(Mapping[str, "FusedEstimate"]):
-    """Of all robots that are in the world, made as they come; noisy poses in telemetry are fused with odometry."""
-
-    def __init__(self, world: SimulatedWorld) -> None:
-        self._world = world
-        self._fused: dict[str, FusedEstimate] = {}
-
-    def __getitem__(self, robot: str) -> FusedEstimate:
-        if robot not in self._fused:
-            port = self._world.ports[robot]
-            self._fused[robot] = FusedEstimate(port, tracker_of(port, self._world.noise, self._world.dt_s))
-        return self._fused[robot]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._world.ports)
-
-    def __len__(self) -> int:
-        return len(self._world.ports)
-
-
-class FusedEstimate(FusedPort):
-    """See `EstimatingPort`; a silent robot's filter rests."""
-
-    def believed(self, now: float) -> tuple[tuple[float, float, float, float], float] | None:
-        """See `EstimatingPort`."""
-        said = self.telemetry()
-        if said is None or said.time_s < now - 1e-6 or self.tracker.estimate is None:
-            return None
-        spread_m = float(np.sqrt(self.tracker.estimate.covariance[[0, 1], [0, 1]].mean()))
-        return (*said.position, said.heading), spread_m
+                self._world.believe(robot, estimate.pose, estimate.spread_m)
 
 
 class LocalisedPorts(Mapping[str, "LocalisedPort"]):
@@ -196,7 +146,7 @@ class LocalisedPorts(Mapping[str, "LocalisedPort"]):
 
 
 class LocalisedPort:
-    """See `EstimatingPort`; a silent robot goes on estimating, and nobody hears of it."""
+    """A robot's port with an estimate of its pose; a silent robot goes on estimating, and nobody hears of it."""
 
     def __init__(self, port: SimulatedPort, estimate: PoseEstimate, now: float) -> None:
         self._port, self.estimate, self._updated_s = port, estimate, now
@@ -219,13 +169,12 @@ class LocalisedPort:
         """See `RobotPort`."""
         return self._now()
 
-    def believed(self, now: float) -> tuple[tuple[float, float, float, float], float] | None:
-        """See `EstimatingPort`."""
+    def updated(self, now: float) -> PoseEstimate:
+        """Return the estimate, with what sensors measured until now."""
         if now > self._updated_s + 1e-6:
             self.estimate.update()
             self._updated_s = now
-        x, y, z, heading = map(float, self.estimate.pose)
-        return (x, y, z, heading), self.estimate.spread_m
+        return self.estimate
 
     def _now(self) -> Telemetry | None:
         """A silent robot's telemetry keeps its time."""
@@ -233,42 +182,3 @@ class LocalisedPort:
         if said is not None and said.time_s >= self._updated_s - 1e-6:
             self._last = self.estimate.told(said)
         return self._last
-
-
-def tracker_of(port: SimulatedPort, noise: Noise, dt_s: float) -> Tracker:
-    """The filter of a robot that reports each `dt_s` seconds."""
-    robot = port.body
-    if kinematics_named(robot.kinematics).faces_its_way:
-        return GroundTracker(ground_errors(robot, noise, dt_s))
-    return AirTracker(air_errors(robot, noise, dt_s))
-
-
-def ground_errors(robot: Robot, noise: Noise, dt_s: float) -> GroundErrors:
-    """What a filter of a robot that faces its way counts with. Speeds may change by all that there is in a step."""
-    share = max(noise.odometry, SLIP_SHARE * noise.slip)
-    return GroundErrors(
-        acceleration_mps2=robot.speed_mps / dt_s,
-        yaw_acceleration_radps2=min(limits_of(robot).yaw_rate_radps, math.pi / dt_s) / dt_s,
-        odometry_share=share,
-        odometry_mps=LEAST_MPS,
-        odometry_slip=max(0.02, noise.slip),
-        gyro_radps=max(noise.gyro_radps, LEAST_RADPS),
-        gyro_bias_radps=max(noise.gyro_bias_radps, LEAST_RADPS),
-        position_m=max(noise.position_m, LEAST_M),
-        heading_rad=max(noise.heading_rad, LEAST_RAD),
-    )
-
-
-def air_errors(robot: Robot, noise: Noise, dt_s: float) -> AirErrors:
-    """The same of one that moves in any direction."""
-    share = max(noise.odometry, SLIP_SHARE * noise.slip)
-    return AirErrors(
-        acceleration_mps2=math.hypot(max(noise.accelerometer_mps2, LEAST_MPS2), share * robot.speed_mps / dt_s),
-        unfelt_mps2=robot.speed_mps,
-        velocity_mps=math.hypot(LEAST_MPS, share * robot.speed_mps),
-        odometry_slip=max(0.02, noise.slip),
-        gyro_radps=max(noise.gyro_radps, LEAST_RADPS),
-        gyro_bias_radps=max(noise.gyro_bias_radps, LEAST_RADPS),
-        position_m=max(noise.position_m, LEAST_M),
-        heading_rad=max(noise.heading_rad, LEAST_RAD),
-    )

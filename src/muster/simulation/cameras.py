@@ -16,18 +16,23 @@ from muster.perception.camera import View
 from muster.perception.camera_observer import CameraObserver, Observation
 from muster.perception.cameras.images import Image
 from muster.perception.detection import TagDetector
-from muster.perception.geometric_detection import GroundTag, sightings_of
+from muster.perception.geometric_detection import MIDDLE_SHARE, GroundTag, sightings_of
+from muster.perception.point_search import FoundPoint
 from muster.perception.tags import tag_pose
 
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """One image of one robot's camera: its time, the picture (None where none is rendered), and the observation."""
+    """One image of one robot's camera: its time, the picture (None where none is rendered), and the observation.
+
+    `finds` is all that the team has found by then.
+    """
 
     robot: str
     time_s: float
     image: Image | None
     observation: Observation
+    finds: tuple[FoundPoint, ...] = ()
 
 
 class Cameras(Protocol):
@@ -35,6 +40,11 @@ class Cameras(Protocol):
 
     detector: TagDetector | None
     """Finds tags in pictures; None where cameras have none."""
+
+    @property
+    def pixel_px(self) -> float:
+        """The standard deviation of a tag's middle in the picture, each axis."""
+        ...
 
     def look(self, observer: CameraObserver, view: View, body: npt.ArrayLike, now: float) -> Look:
         """Look from the camera's true `view`; `body`, (6,) or (4, 4), is the pose that the robot estimates."""
@@ -71,6 +81,11 @@ class GeometricCameras:
         ]
         self._random = np.random.default_rng((seed, 1))
         self._corner_px = corner_px
+
+    @property
+    def pixel_px(self) -> float:
+        """See `Cameras`."""
+        return MIDDLE_SHARE * self._corner_px
 
     def look(self, observer: CameraObserver, view: View, body: npt.ArrayLike, now: float) -> Look:
         """See `Cameras`."""

@@ -11,9 +11,8 @@ from muster.motion.frames import wrapped
 from muster.motion.grid import Floats
 from muster.motion.map_world import Body, World
 from muster.motion.maps.free_points import free
-from muster.perception.dead_reckoning import HEADING, X, Y, Z, by_pose
 from muster.perception.errors import ReckoningErrors
-from muster.perception.kalman import Estimate
+from muster.perception.joint_estimate import HEADING, JointEstimate, X, Y, Z
 from muster.perception.laser import Scanner
 from muster.perception.likelihood_field import LikelihoodField
 from muster.perception.monte_carlo import MonteCarlo, MonteCarloParameters
@@ -27,8 +26,6 @@ _LEAST = np.array([0.005, 0.005, 0.0, 0.005])
 """Deviations with which a pose by the particles counts at least, in m and rad; its height does not count."""
 MOST_PARTICLES = 4000
 """A robot that knows where it starts needs no more to stay found."""
-_UNKNOWN_M = 1e3
-"""The deviation of a height that a scan says nothing about."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,7 +82,7 @@ class ScannedMap:
 
 
 class MapScans:
-    """See `MapScanParameters`. Particles move as the estimate does, and their pose corrects it.
+    """See `MapScanParameters`. Particles move as the estimate does, and their pose takes its place: it holds all scans.
 
     `errors` are those of the robot's dead reckoning; particles spread by twice as much, so that they cover the truth.
     """
@@ -120,7 +117,7 @@ class MapScans:
         )
         self._before: Floats | None = None
 
-    def corrected(self, estimate: Estimate) -> Estimate:
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
         """See `PoseSensor`."""
         if not self._readings.due(self._world.time_s):
             return estimate
@@ -130,8 +127,8 @@ class MapScans:
         self._particles.correct(self._laser.scan(), self._laser.bearings)
         found = self._particles.estimate
         x, y, heading = found.mean
-        deviations = np.maximum(_LEAST, [*found.deviations[:2], _UNKNOWN_M, found.deviations[2]])
-        estimate = by_pose(estimate, [x, y, estimate.mean[Z], heading], deviations).estimate
+        deviations = np.maximum(_LEAST, [*found.deviations[:2], estimate.deviations[Z], found.deviations[2]])
+        estimate = estimate.with_pose([x, y, estimate.mean[Z], heading], deviations)
         self._before = estimate.mean[[X, Y, HEADING]]
         return estimate
 

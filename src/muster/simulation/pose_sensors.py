@@ -15,7 +15,7 @@ from muster.mission.errors import ParameterError
 from muster.motion.frames import wrapped
 from muster.motion.grid import Floats
 from muster.perception.dead_reckoning import by_pose, by_position
-from muster.perception.kalman import Estimate
+from muster.perception.joint_estimate import Fix, JointEstimate
 from muster.simulation.world import SimulatedWorld
 
 _STREAM = 0x905E
@@ -27,7 +27,7 @@ _LEAST_M, _LEAST_RAD = 1e-4, 1e-4
 class PoseSensor(Protocol):
     """One sensor of one robot."""
 
-    def corrected(self, estimate: Estimate) -> Estimate:
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
         """The estimate with what it measures now; the same estimate where it measures nothing now."""
         ...
 
@@ -153,7 +153,7 @@ class MotionCapture(_OfOneRobot):
         markers[3] = wrapped(markers[3])
         return markers
 
-    def corrected(self, estimate: Estimate) -> Estimate:
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
         """See `PoseSensor`."""
         pose = self.measured()
         return estimate if pose is None else by_pose(estimate, pose, self.deviations).estimate
@@ -167,9 +167,35 @@ class Satellites(_OfOneRobot):
         self._readings = Readings(how.rate_hz, how.drop_out, how.drop_out_s, self._random)
         self._error_m = how.position_m
 
-    def corrected(self, estimate: Estimate) -> Estimate:
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
         """See `PoseSensor`."""
         if not self._readings.due(self._world.time_s):
             return estimate
         place = self._pose[:3] + self._random.normal(0.0, self._error_m, 3)
         return by_position(estimate, place, [max(self._error_m, _LEAST_M)] * 3).estimate
+
+
+class ToldPoses:
+    """The noisy poses of a robot's own telemetry; none while it is silent."""
+
+    def __init__(self, world: SimulatedWorld, robot: str) -> None:
+        self._world, self._port = world, world.ports[robot]
+        noise, is_in_space = world.noise, len(self._port.body.position) == 3
+        position_m = max(noise.position_m, _LEAST_M)
+        self.deviations = (
+            position_m, position_m, position_m if is_in_space else _LEAST_M, max(noise.heading_rad, _LEAST_RAD)
+        )  # fmt: skip
+        self.fix: Fix | None = None
+        """The last correction."""
+        said = self._port.telemetry()
+        assert said is not None  # a simulated robot has telemetry from the beginning
+        self.start = np.array([*said.position, said.heading])
+        """The first pose that was told."""
+
+    def corrected(self, estimate: JointEstimate) -> JointEstimate:
+        """See `PoseSensor`."""
+        said = self._port.telemetry()
+        if said is None or said.time_s < self._world.time_s - 1e-6:
+            return estimate
+        self.fix = by_pose(estimate, [*said.position, said.heading], self.deviations)
+        return self.fix.estimate

@@ -268,7 +268,7 @@ def _report(data: Data) -> str:
 
 def _found(data: Data) -> str:
     """`found: tag 5 at 4.02, 0.31 by r_0, sure to 0.05 m; becomes found-5`."""
-    line = _filled("found: tag {tag} at {position} by {robots}, sure to {deviation_m} m", data)
+    line = _filled("found: tag {tag} at {position} by {robots}, sure to {sure_to_m} m", data)
     return f"{line}; becomes {data['task']}" if data.get("task") else line
 
 
@@ -283,10 +283,11 @@ SAYS: dict[str, Says] = {
     "found": _found,
     "without_effect": _without_effect,
     "contact": "{robots} touch each other",
+    "off_place": "{robot} takes task {task} for done, {off_m} m off its place",
     "agreed": "robots have agreed",
     "new_agreement": "robots have agreed anew",
     "improved": "a search has found better routes",
 }
 """By kind what it says: here kinds that are no event of the state, or causes of a new plan."""
-MARKS: dict[str, Mark] = {"command": CHANGE, "contact": ALARM}
+MARKS: dict[str, Mark] = {"command": CHANGE, "contact": ALARM, "off_place": ALARM}
 """By kind its mark, likewise."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean, median
+from typing import Any
 
 from muster_studies.descriptions import description
 from muster_studies.effort import Effort
+from muster_studies.localisation.consistency import Consistencies, Consistency, ConsistencyJob
 from muster_studies.localisation.drives import SCAN_S, SCANNER, SLIP, TURN_RAD
 from muster_studies.localisation.errors import (
     BEARING_RAD,
@@ -117,7 +119,7 @@ def _or_none(of: Callable[[Sequence[float]], float], values: Sequence[float]) ->
     return (of(values) if values else None,)
 
 
-_TABLES: tuple[Reproduction[Job, Track], ...] = (
+_TABLES: tuple[Reproduction[Any, Any], ...] = (
     Tracking(
         "tracking", "A robot that knows where it starts", (f"Drives of {DRIVEN_S:g} s, with --quick of {QUICK_S:g} s.",)
     ),
@@ -140,6 +142,7 @@ _TABLES: tuple[Reproduction[Job, Track], ...] = (
             f"off by {RANGE_M} m and {BEARING_RAD} rad, and joins what both know by covariance intersection.",
         ),
     ),
+    Consistencies(),
 )
 
 _LEGEND = (
@@ -149,10 +152,15 @@ _LEGEND = (
     "distances of the estimated from the true place.",
 )
 
+
+def _performed(job: Job | ConsistencyJob) -> Track | Consistency:
+    return job.perform()
+
+
 LOCALISATION = Repetition(
     **description("localisation", _LEGEND),
     reproductions=_TABLES,
-    perform=one_by_one(Job.perform),
+    perform=one_by_one(_performed),
     extras=("map",),
 )
 """Lidar odometry, Monte Carlo localisation and collaborative localisation, which the theses review."""

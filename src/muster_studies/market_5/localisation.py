@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from muster.motion.grid import Floats
-from muster.perception.dead_reckoning import HEADING, X, Y
 from muster.perception.estimates import NO_TAG, RawEstimates
+from muster.perception.joint_estimate import HEADING, X, Y
 from muster.perception.kalman import Estimate
 from muster.perception.laser import points_of
 from muster.perception.spikes import Landmark, landmarks
@@ -64,7 +64,7 @@ class RobotLocalisation:
     def pose(self) -> Estimate:
         """Where it takes itself to be: x, y and heading."""
         estimate = self._reckoned.estimate
-        return Estimate(estimate.mean[_POSE], estimate.covariance[np.ix_(_POSE, _POSE)])
+        return Estimate(estimate.mean[_POSE], estimate.pose_covariance[np.ix_(_POSE, _POSE)])
 
     def look(self, others: Iterable[Floats]) -> list[CylinderSighting]:
         """Scan; return sightings that are neither landmarks nor robots."""

@@ -13,6 +13,7 @@ from muster.mission.yaml_writer import plain
 from muster.motion.port import RobotPort
 from muster.running.camera_search import CameraSearch
 from muster.running.state_estimation import RobotsInWorld
+from muster.running.true_places import TruePlaces
 from muster.simulation import SimulatedWorld
 from muster.state import OtherEvent
 from muster_team.knowledge.messages import Stage
@@ -45,6 +46,7 @@ class RobotBodies:
         self, mission: Mission, world: SimulatedWorld, robots: RobotsInWorld, setup: TeamSetup, log: TeamLog
     ) -> None:
         self._world, self._setup, self._log = world, setup, log
+        self.true_places = TruePlaces(mission, world, robots, self._tag_of)
         self._telemetry_source = robots
         self._method = method_named(setup.method)
         self._future_events = sorted(mission.events, key=lambda event: event.at_s)
@@ -65,8 +67,11 @@ class RobotBodies:
             self._orders[robot] = self._world.ports[robot].send(report.waypoints)
         elif isinstance(report, WorkReport):
             self._work_reports[robot], self._log.used[robot] = report, report.used
+            told = len(self._log.events)
             for at_s, kind, data in report.events:
                 self._log.take(robot, at_s, kind, data, report.used)
+            for off in self.true_places.follow(self._log.events[told:], self._log.state.ledger.tasks):
+                self._log.tell(off)
 
     @property
     def ports(self) -> Mapping[str, RobotPort]:
@@ -107,6 +112,7 @@ class RobotBodies:
         while self._future_events and self._future_events[0].at_s <= self.time_s + 1e-9:
             self._take_event(self._future_events.pop(0))
         self._check_cameras()
+        self.true_places.look()
         for robot in self._sent_to.keys() & self.team.ended.keys():
             self._unsent += filter(self._is_valid, self._sent_to.pop(robot))  # other robots may not know of it
         while self._unsent and self._connected:
@@ -131,6 +137,9 @@ class RobotBodies:
             self._log.tell(OtherEvent(time_s=self.time_s, kind="found", content=found))
             if event is not None:
                 self._take_event(event)
+
+    def _tag_of(self, task: str) -> int | None:
+        return None if self.camera_search is None else self.camera_search.tasks.tag_of(task)
 
     @property
     def _connected(self) -> list[str]:

@@ -19,6 +19,7 @@ from muster.running.camera_search import camera_search_for, with_found
 from muster.running.observed_run import ObservedRun
 from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.state_estimation import EstimatedWorld, with_state_estimation
+from muster.running.true_places import with_truth
 from muster.traffic.names import RESERVE
 from muster_team.network.keys import new_key
 from muster_team.processes.process_reports import TeamSetup
@@ -82,7 +83,7 @@ def negotiate_and_carry_out(
         camera_search = camera_search_for(
             mission,
             bodies,
-            robot_bodies.ports,
+            robots,
             noise=request.noise,
             seed=request.seed,
             on_look=request.on_look,
@@ -100,7 +101,8 @@ def negotiate_and_carry_out(
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
         if isinstance(robots, EstimatedWorld):
             report = replace(report, remarks=(*report.remarks, robots.remark))
-        report = with_tracking(with_found(report, camera_search), bodies)
+        report = with_truth(with_found(report, camera_search), mission, robot_bodies.true_places.done)
+        report = with_tracking(report, bodies)
         if recorder is not None:
             recorder.on_report(report.as_dict())
         return report

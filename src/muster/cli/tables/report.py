@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,7 +14,7 @@ from muster.mission.model import Mission, Tag
 from muster.mission.texts.counting import counted
 
 _NEAR_M = 1.0
-"""What was found farther from a tag is another one."""
+"""What was found farther from a tag is another one of its id."""
 _SHOWN_S = 0.01  # by which waiting differs in what is printed
 _MOST_HELD_UP = 5
 """Rows of waiting in traffic that are printed."""
@@ -219,7 +220,7 @@ def _print_found(report: Report, mission: Mission) -> None:
             (
                 str(row["tag"]),
                 *(number(value) for value in row["position"][:2]),
-                *("-" if row.get(key) is None else f"{row[key]:.3f}" for key in ("deviation_m", "error_m")),
+                *("-" if row.get(key) is None else f"{row[key]:.3f}" for key in ("sure_to_m", "error_m")),
                 counted(row.get("sightings", 0), "time"),
                 ", ".join(row.get("robots", ())),
                 number(row.get("found_s")),
@@ -228,14 +229,15 @@ def _print_found(report: Report, mission: Mission) -> None:
             for row in found
         ]
         print_table(columns, rows, title="found by cameras", right=columns[1:6])
-    missed = [str(tag.id) for tag in mission.tags if not any(_is(row, tag) for row in found)]
+    alone = {tag: count == 1 for tag, count in Counter(tag.id for tag in mission.tags).items()}
+    missed = [str(tag.id) for tag in mission.tags if not any(_is(row, tag, alone[tag.id]) for row in found)]
     if missed:
         click.echo(f"{'not found':<17} {counted(len(missed), 'tag')}: {', '.join(missed)}")
 
 
-def _is(row: Report, tag: Tag) -> bool:
-    """Whether a finding is this tag."""
-    return bool(row["tag"] == tag.id and math.dist(row["position"][:2], tag.position[:2]) < _NEAR_M)
+def _is(row: Report, tag: Tag, is_alone: bool) -> bool:
+    """Whether a finding is this tag: the only one of its id, or the one that is there."""
+    return bool(row["tag"] == tag.id and (is_alone or math.dist(row["position"][:2], tag.position[:2]) < _NEAR_M))
 
 
 def _objective(objective: Report | None, unit: str) -> str:

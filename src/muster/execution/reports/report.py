@@ -67,6 +67,9 @@ class TaskReport:
 
     `waiting_s` is for how long its robot waited there. Of a task done by a team `robot` is the first of the `team`, and
     usages and waiting are those of all. `lateness_s` is by how much it ended after its due time.
+
+    Where a simulated world knows, `done_m_off` is how far from its true place it was done, and `within_m` how far at
+    most that may be.
     """
 
     task: str
@@ -76,6 +79,8 @@ class TaskReport:
     waiting_s: float
     team: tuple[str, ...] = ()
     lateness_s: float = 0.0
+    done_m_off: float | None = None
+    within_m: float | None = None
 
 
 @dataclass(frozen=True)
@@ -97,6 +102,8 @@ class FoundReport:
         the id that was decoded.
     position, deviation_m
         x and y in the map frame by all sightings, and the greatest standard deviation along any direction, metres.
+    sure_to_m
+        the radius about the position within which it is with a probability of 95 %.
     error_m
         how far that is from the nearest such tag of the mission; None where it has none.
     sightings, robots
@@ -110,6 +117,7 @@ class FoundReport:
     tag: int
     position: tuple[float, ...]
     deviation_m: float
+    sure_to_m: float
     error_m: float | None
     sightings: int
     robots: tuple[str, ...]
@@ -152,8 +160,9 @@ class Report:
         from the beginning until the last robot was done, at its end if it has one; `starts_s` and `ends_s` are of
         tasks done, by the mission's clock.
     tasks_done, tasks_lost
-        in order of completion; and every other task, with the reason. A standing fleet lists the tasks that it
-        remembers, and the last 20 that were lost before.
+        in order of completion; and every other task, with the reason. In a simulated world a task is done that was
+        done within its tolerance of its true place. A standing fleet lists the tasks that it remembers, and the last
+        20 that were lost before.
     contacts, min_distance_m
         how often two robots touched, and the least distance between their centres, None for one robot; both None where
         nobody measured it.
@@ -179,7 +188,7 @@ class Report:
     objective
         of the plan; `average` is of the usages with which robots came to tasks, `makespan` the end of the last task.
     tasks
-        of tasks done, in order of completion.
+        of tasks that robots take for done, in order of completion.
     done_twice
         by task that several robots have begun, as they could not hear each other, these robots.
     found
