@@ -1,0 +1,261 @@
+"""The ground as robots know it that have no map: what the rules close, and what lasers have seen of the rest.
+
+The operation's boundary, no-fly zones and doors are known beforehand; obstacles are not. Ways are planned as if all
+that was not seen were free, and planned anew where they turn out to be blocked ([koenig2005]): a way is found wherever
+there is one, and there is none only when what was seen proves it.
+
+A centre of a body is kept off the points that lasers hit, not off whole cells, unless obstacles fill cells. Two passes
+see to the rest that cells round off: at first cells count as free that are so for certain; where that leaves no way,
+those that may be free.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from muster.motion.free_space import GridSpace, PolygonSpace
+from muster.motion.grid import Bools, Floats, Grid
+from muster.motion.map_world import Area, Body, World
+from muster.motion.maps.free_points import free
+from muster.motion.maps.raster import in_cells, touched
+from muster.motion.path import NoPath, Path
+from muster.motion.paths import PathFinder
+from muster.motion.paths.on_grid import without_repetitions
+from muster.motion.paths.planner import disconnected, not_free
+from muster.perception.occupancy_map import OccupancyMap
+
+CERTAIN, POSSIBLE = PASSES = (1, -1)
+"""The two passes: which cells count as free."""
+_HALF = math.sqrt(0.5)
+_SPARE = 0.15
+"""Of a cell by which ways that are free for certain are farther off: what is hit lies anywhere between hits."""
+_SNAP_CELLS = 4
+"""Cells between a place that is free and the nearest cell that is free for certain, at most."""
+_SLACK = 1e-6
+"""Of a radius, by which a place may be too near to what was hit."""
+
+
+def is_obstacle(area: Area) -> bool:
+    """Return whether a zone is a thing that stands there, which lasers see; else it is closed by rule, and known."""
+    return area.zone.id is None and "ground" in area.zone.forbidden_to
+
+
+def ruled_world(world: World) -> World:
+    """Return the world without obstacles: its extent or boundary, its no-fly zones and its doors."""
+    import shapely
+
+    areas = tuple(area for area in world.areas if not is_obstacle(area))
+    if world.image is None:
+        return replace(world, areas=areas)
+    rows, columns = world.image.shape
+    corners = world.image.to_map(np.array([(0, 0), (columns, 0), (columns, rows), (0, rows)], dtype=np.float64))
+    return replace(world, image=None, boundary=shapely.Polygon(corners), areas=areas)
+
+
+def frame_of(world: World, radius_m: float) -> Grid:
+    """Return the cells of a map to be built: a quarter of the least radius wide, 1000 on a side at most.
+
+    The cells of an image that are coarser than that are halved until they are not.
+    """
+    if world.image is not None:
+        rows, columns = world.image.shape
+        wanted = max(radius_m / 4, world.image.resolution_m * max(rows, columns) / 1000)
+        parts = max(1, math.floor(world.image.resolution_m / wanted))
+        size = (rows * parts, columns * parts)
+        return Grid(np.zeros(size, dtype=np.bool_), world.image.resolution_m / parts, world.image.origin)
+    assert world.boundary is not None
+    west, south, east, north = world.boundary.bounds
+    extent = max(east - west, north - south)
+    cell_m = min(max(radius_m / 4, extent / 1000), extent / 100)
+    size = (max(1, math.ceil((north - south) / cell_m)), max(1, math.ceil((east - west) / cell_m)))
+    return Grid(np.zeros(size, dtype=np.bool_), cell_m, (west, south, 0.0))
+
+
+def map_to_build(world: World, radii_m: Collection[float]) -> OccupancyMap:
+    """Return an empty map of a world for bodies of some radii."""
+    frame = frame_of(world, min(radii_m))
+    return OccupancyMap(frame, max(radii_m) + 2 * frame.resolution_m, fills_cells=world.image is not None)
+
+
+@dataclass(eq=False)
+class ExploredGround:
+    """Ways over ground that is partly known.
+
+    Parameters
+    ----------
+    rules : World
+        What is known beforehand, of `ruled_world`.
+    seen : OccupancyMap
+        What was seen; `grown` is to be called when cells of it have become occupied or free.
+    """
+
+    rules: World
+    seen: OccupancyMap
+    _made: dict[tuple[Body, int], _Finder] = field(default_factory=dict, init=False, repr=False)
+    _ruled: dict[tuple[Body, int], Bools] = field(default_factory=dict, init=False, repr=False)
+
+    def grown(self) -> None:
+        """Forget what was made of the map as it was."""
+        self._made.clear()
+
+    def close(self, rules: World) -> None:
+        """Take over rules that have changed: doors that have closed or opened."""
+        self.rules = rules
+        self._ruled.clear()
+        self._made.clear()
+
+    def way(self, body: Body, start: Sequence[float], goal: Sequence[float]) -> Path | NoPath:
+        """Return the shortest way by what is known, or the reason why that leaves none."""
+        return self.sure_way(body, start, goal)[0]
+
+    def sure_way(self, body: Body, start: Sequence[float], goal: Sequence[float]) -> tuple[Path | NoPath, int]:
+        """Return the way as `way` does, and of which pass it is."""
+        a, b = np.array(start[:2], dtype=np.float64), np.array(goal[:2], dtype=np.float64)
+        if not self.stands(body, b):
+            blocked = not_free(True, False, a, b)
+            assert blocked is not None
+            return blocked, CERTAIN
+        for certainty in PASSES:
+            points = self._finder(body, certainty).way(a, b)
+            if points is not None:
+                return Path(without_repetitions(points)), certainty
+        return disconnected(a, b), CERTAIN
+
+    def lengths(self, body: Body, exits: Floats, entries: Floats) -> Floats:
+        """Return the lengths (n, m) of ways from exits (n, d) to entries (m, d), metres; inf where there is none."""
+        metres = np.full((len(exits), len(entries)), math.inf)
+        stands = np.array([self.stands(body, place) for place in entries[:, :2]], dtype=np.bool_)
+        for certainty in PASSES:
+            open_ = np.isinf(metres) & stands
+            if open_.any():
+                rows, columns = open_.any(axis=1), open_.any(axis=0)
+                found = self._finder(body, certainty).lengths(exits[rows, :2], entries[columns, :2])
+                some = np.ix_(rows, columns)
+                metres[some] = np.minimum(metres[some], found)
+        return metres
+
+    def stands(self, body: Body, place: Floats) -> bool:
+        """Return whether a body can stand at a place, as far as is known."""
+        if not self._may_be(body, place[None, :2])[0]:
+            return False
+        return self.seen.nearest_m(place[:2]) >= body.radius_m * (1 - _SLACK)
+
+    def is_clear(self, body: Body, points: Floats, certainty: int, obstacles: Floats) -> bool:
+        """Return whether no obstacle (n, 2) is too near to the legs between points (k, 2).
+
+        A way of the second pass may be nearer by a cell's diagonal than the body is wide.
+        """
+        if not len(obstacles) or len(points) < 2:
+            return True
+        cell_m = self.seen.frame.resolution_m
+        if self.seen.fills_cells:
+            near = body.radius_m + certainty * _HALF * cell_m
+        else:
+            near = body.radius_m - (2 * _HALF * cell_m if certainty == POSSIBLE else 0.0)
+        return bool(_from_legs(points, obstacles).min() >= max(near, 0.0))
+
+    def free_cells(self, body: Body, certainty: int = CERTAIN) -> Bools:
+        """Return which cells are free for a body as far as is known, unseen ones included."""
+        return ~self._finder(body, certainty).blocked
+
+    def _may_be(self, body: Body, places: Floats) -> Bools:
+        return free(self.rules.free_space(body.radius_m, body.kind, False), places)
+
+    def _finder(self, body: Body, certainty: int) -> _Finder:
+        key = (body, certainty)
+        if key not in self._made:
+            self._made[key] = _Finder(self.seen.frame, self._blocked(body, certainty))
+        return self._made[key]
+
+    def _blocked(self, body: Body, certainty: int) -> Bools:
+        """Return the cells that are blocked by rule, and those whose centres are too near to what was hit."""
+        cell_m = self.seen.frame.resolution_m
+        if self.seen.fills_cells:
+            least = max(body.radius_m * (1 - _SLACK), _SLACK * cell_m)
+        else:
+            spare = _HALF + _SPARE if certainty == CERTAIN else -_HALF
+            least = max(body.radius_m + spare * cell_m, _HALF * cell_m)
+        near: Bools = self.seen.clearances < least
+        return self._by_rule(body, certainty) | near
+
+    def _by_rule(self, body: Body, certainty: int) -> Bools:
+        key = (body, certainty)
+        if key not in self._ruled:
+            import shapely
+
+            frame = self.seen.frame
+            radius_m = body.radius_m - (2 * _HALF * frame.resolution_m if certainty == POSSIBLE else 0.0)
+            space = self.rules.free_space(max(radius_m, 0.0), body.kind, False)
+            assert isinstance(space, PolygonSpace)
+            rows, columns = frame.shape
+            beyond = shapely.difference(shapely.box(0, 0, columns, rows), in_cells(space.region, frame))
+            self._ruled[key] = touched(beyond, frame.shape)
+        return self._ruled[key]
+
+
+class _Finder:
+    """Shortest ways through the free cells of one pass; ends beside them are joined to the nearest."""
+
+    def __init__(self, frame: Grid, blocked: Bools) -> None:
+        self.blocked = blocked
+        self._grid = Grid(blocked, frame.resolution_m, frame.origin)
+        self._finder = PathFinder(GridSpace(self._grid))
+
+    def way(self, start: Floats, goal: Floats) -> Floats | None:
+        begin, end = self._joined(start, _SNAP_CELLS * 4), self._joined(goal, _SNAP_CELLS)
+        if begin is None or end is None:
+            return None
+        found = self._finder.path(begin, end)
+        return None if isinstance(found, NoPath) else np.concatenate([[start], found.points, [goal]])
+
+    def lengths(self, exits: Floats, entries: Floats) -> Floats:
+        begins = [self._joined(place, _SNAP_CELLS * 4) for place in exits]
+        ends = [self._joined(place, _SNAP_CELLS) for place in entries]
+        metres = np.full((len(exits), len(entries)), math.inf)
+        rows = [k for k, place in enumerate(begins) if place is not None]
+        columns = [k for k, place in enumerate(ends) if place is not None]
+        if rows and columns:
+            leave, enter = np.array([begins[k] for k in rows]), np.array([ends[k] for k in columns])
+            before = np.linalg.norm(leave - exits[rows], axis=1)[:, None]
+            after = np.linalg.norm(enter - entries[columns], axis=1)
+            metres[np.ix_(rows, columns)] = before + self._finder.lengths(leave, enter) + after
+        same = (exits[:, None] == entries).all(axis=2)
+        metres[same] = 0.0
+        return metres
+
+    def _joined(self, place: Floats, cells: int) -> Floats | None:
+        """Return the place itself where it is free, or the nearest centre of a free cell within some cells."""
+        column, row = self._grid.to_grid(place[None, :2])[0]
+        height, width = self._grid.shape
+        i, j = math.floor(row), math.floor(column)
+        if 0 <= i < height and 0 <= j < width and not self.blocked[i, j]:
+            return place
+        top, left = max(0, i - cells), max(0, j - cells)
+        free_ = np.argwhere(~self.blocked[top : i + cells + 1, left : j + cells + 1])
+        if not len(free_):
+            return None
+        centres = free_ + np.array([top + 0.5, left + 0.5])
+        away = np.hypot(centres[:, 0] - row, centres[:, 1] - column)
+        nearest = int(np.argmin(away))
+        if away[nearest] > cells:
+            return None
+        joined: Floats = self._grid.to_map(centres[None, nearest, ::-1])[0]
+        return joined
+
+
+def _from_legs(points: Floats, places: Floats) -> Floats:
+    """Return the distances (n,) of places (n, 2) from the nearest of the legs between points (k, 2)."""
+    least = np.full(len(places), math.inf)
+    for a, b in _legs(points):
+        along = b - a
+        share = np.clip((places - a) @ along / max(float(along @ along), 1e-18), 0.0, 1.0)
+        least = np.minimum(least, np.linalg.norm(places - a - share[:, None] * along, axis=1))
+    return least
+
+
+def _legs(points: Floats) -> Iterator[tuple[Floats, Floats]]:
+    return zip(points[:-1, :2], points[1:, :2], strict=True)
