@@ -132,6 +132,10 @@ class OccupancyMap:
         apart = self.frame.to_grid(self.points_in(near + np.array([top, left]))) - self.frame.to_grid(place[None])
         return float(np.linalg.norm(self._gaps(apart, 0.5), axis=1).min() * cell_m)
 
+    def centres(self, cells: Indices) -> Floats:
+        """Return the centres (n, 2) of cells (n, 2) of rows and columns, metres in the map frame."""
+        return self.frame.to_map(cells[:, ::-1].astype(np.float64) + 0.5)
+
     def _keep_off(self, cells: Indices) -> None:
         """Take the points hit in these cells into the clearances of the cells around them."""
         if not len(cells):
