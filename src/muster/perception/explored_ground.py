@@ -12,13 +12,13 @@ those that may be free.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from muster.motion.free_space import GridSpace, PolygonSpace
-from muster.motion.grid import Bools, Floats, Grid
+from muster.motion.grid import Bools, Floats, Grid, Indices
 from muster.motion.map_world import Area, Body, World
 from muster.motion.maps.free_points import free
 from muster.motion.maps.raster import in_cells, touched
@@ -144,19 +144,21 @@ class ExploredGround:
             return False
         return self.seen.nearest_m(place[:2]) >= body.radius_m * (1 - _SLACK)
 
-    def is_clear(self, body: Body, points: Floats, certainty: int, obstacles: Floats) -> bool:
-        """Return whether no obstacle (n, 2) is too near to the legs between points (k, 2).
+    def is_clear(self, body: Body, points: Floats, certainty: int, cells: Indices) -> bool:
+        """Return whether no obstacle in cells (n, 2) is too near to the line through points (k, 2).
 
         A way of the second pass may be nearer by a cell's diagonal than the body is wide.
         """
-        if not len(obstacles) or len(points) < 2:
+        if not len(cells):
             return True
-        cell_m = self.seen.frame.resolution_m
-        if self.seen.fills_cells:
-            near = body.radius_m + certainty * _HALF * cell_m
-        else:
-            near = body.radius_m - (2 * _HALF * cell_m if certainty == POSSIBLE else 0.0)
-        return bool(_from_legs(points, obstacles).min() >= max(near, 0.0))
+        spare = _SLACK * body.radius_m if certainty == CERTAIN else 2 * _HALF * self.seen.frame.resolution_m
+        return bool(self.seen.from_line_m(points, cells).min() >= max(body.radius_m - spare, 0.0))
+
+    def is_free(self, body: Body, points: Floats) -> bool:
+        """Return whether a body can stand at points (k, 2), and go straight from each to the next."""
+        return all(self.stands(body, point) for point in points) and (
+            len(points) < 2 or self._finder(body, POSSIBLE).sees(points)
+        )
 
     def free_cells(self, body: Body, certainty: int = CERTAIN) -> Bools:
         """Return which cells are free for a body as far as is known, unseen ones included."""
@@ -212,6 +214,9 @@ class _Finder:
         found = self._finder.path(begin, end)
         return None if isinstance(found, NoPath) else np.concatenate([[start], found.points, [goal]])
 
+    def sees(self, points: Floats) -> bool:
+        return self._finder.clear(points)
+
     def lengths(self, exits: Floats, entries: Floats) -> Floats:
         begins = [self._joined(place, _SNAP_CELLS * 4) for place in exits]
         ends = [self._joined(place, _SNAP_CELLS) for place in entries]
@@ -245,17 +250,3 @@ class _Finder:
             return None
         joined: Floats = self._grid.to_map(centres[None, nearest, ::-1])[0]
         return joined
-
-
-def _from_legs(points: Floats, places: Floats) -> Floats:
-    """Return the distances (n,) of places (n, 2) from the nearest of the legs between points (k, 2)."""
-    least = np.full(len(places), math.inf)
-    for a, b in _legs(points):
-        along = b - a
-        share = np.clip((places - a) @ along / max(float(along @ along), 1e-18), 0.0, 1.0)
-        least = np.minimum(least, np.linalg.norm(places - a - share[:, None] * along, axis=1))
-    return least
-
-
-def _legs(points: Floats) -> Iterator[tuple[Floats, Floats]]:
-    return zip(points[:-1, :2], points[1:, :2], strict=True)

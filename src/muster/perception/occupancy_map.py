@@ -82,13 +82,13 @@ class OccupancyMap:
         known: Bools = (self.hits > 0) | (self.passes > 0)
         return known
 
-    def see(self, scan: Scan, scanner: Scanner) -> tuple[Floats, bool]:
+    def see(self, scan: Scan, scanner: Scanner) -> tuple[Indices, bool]:
         """Enter a scan.
 
         Returns
         -------
-        the points (n, 2) of cells that it found to be occupied and were not; and whether the map of obstacles changed
-        at all.
+        the cells (n, 2), rows and columns, that it found to be occupied and were not; and whether the map of obstacles
+        changed at all.
         """
         freed = self._pass(scan, scanner)
         points, inner = _hit_points(scan, scanner)
@@ -107,7 +107,7 @@ class OccupancyMap:
             self._keep_off(np.argwhere(self.occupied))
         else:
             self._keep_off(fresh)
-        return self.points_in(fresh), freed or len(fresh) > 0
+        return fresh, freed or len(fresh) > 0
 
     def points_in(self, cells: Indices) -> Floats:
         """Return the mean points hit, (n, 2) metres in the map frame, in cells (n, 2) of rows and columns.
@@ -131,6 +131,19 @@ class OccupancyMap:
             return math.inf
         apart = self.frame.to_grid(self.points_in(near + np.array([top, left]))) - self.frame.to_grid(place[None])
         return float(np.linalg.norm(self._gaps(apart, 0.5), axis=1).min() * cell_m)
+
+    def from_line_m(self, points: Floats, cells: Indices) -> Floats:
+        """Return the distances (n,) of the obstacles in cells (n, 2) from the line through points (k, 2), metres."""
+        import shapely
+
+        line = shapely.LineString(self.frame.to_grid(points if len(points) > 1 else np.repeat(points, 2, axis=0)))
+        if self.fills_cells:
+            rows, columns = cells.T
+            obstacles = shapely.box(columns, rows, columns + 1, rows + 1)
+        else:
+            obstacles = shapely.points(self.frame.to_grid(self.points_in(cells)))
+        metres: Floats = shapely.distance(obstacles, line) * self.frame.resolution_m
+        return metres
 
     def centres(self, cells: Indices) -> Floats:
         """Return the centres (n, 2) of cells (n, 2) of rows and columns, metres in the map frame."""

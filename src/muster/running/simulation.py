@@ -24,10 +24,13 @@ from muster.running.robots_in_traffic import RobotsInTraffic
 from muster.running.run_request import RunRequest
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.traffic_choice import manager_for
+from muster.running.unknown_ground import unknown_ground_for
 from muster.running.worlds import has_ability, world_named
 from muster.simulation import NO_NOISE, SimulatedWorld
 from muster.simulation.declaration import EXACT
 from muster.state import MissionState, OtherEvent
+from muster.state.ground_events import GroundUnknown
+from muster.traffic.names import FREE
 from muster.verification import verify
 from muster.verification.required import require_geometry, require_open_ways
 
@@ -78,15 +81,19 @@ class Simulation:
         **how: Any,
     ) -> None:
         request = ObservedRun(**how) if request is None else request
-        if begun is None:  # later each robot stands anywhere, and a leg is checked when it is sent
-            require_open_ways(mission, plan)
+        ground = self._ground = unknown_ground_for(mission, request.unknown, request.explore)
         there = mission if begun is None else begun.standing(mission)
         require_carried_out(mission)
         require_geometry(mission, "a simulated run")
-        robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
+        if ground is not None:
+            mission, robot_paths = ground.mission, ground.paths
+        else:
+            robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
+            if begun is None:  # later each robot stands anywhere, and a leg is checked when it is sent
+                require_open_ways(mission, plan)
         travel, seed = travel_of(mission, robot_paths), request.seed
         manager = manager_for(
-            request.traffic,
+            request.traffic if ground is None else FREE,
             mission,
             seed=seed,
             avoidance=request.avoidance,
@@ -126,6 +133,9 @@ class Simulation:
         self._ahead = sorted(there.events, key=lambda event: event.at_s)
         if begun is not None and self._camera_search is not None:
             self._camera_search.resume(begun.bodies["found"])
+        if ground is not None:
+            ground.begin(self._world, self._robots.ports, self._executor)
+            self._executor.plan_again(GroundUnknown())
         self._tick()
 
     @property
@@ -227,7 +237,8 @@ class Simulation:
         report = report_of(self._executor.account, contacts=len(world.contacts), min_distance_m=world.min_distance_m)
         if self._estimated is not None:
             report = replace(report, remarks=(*report.remarks, self._estimated.remark))
-        return with_tracking(with_found(report, self._camera_search), world)
+        report = with_tracking(with_found(report, self._camera_search), world)
+        return report if self._ground is None else self._ground.with_ground(report)
 
     @property
     def status(self) -> Status:
@@ -260,10 +271,16 @@ class Simulation:
 
     @property
     def _look_due_s(self) -> float:
-        return math.inf if self._camera_search is None else self._camera_search.due_s
+        lidars_s = math.inf if self._ground is None else self._ground.due_s
+        return min(lidars_s, math.inf if self._camera_search is None else self._camera_search.due_s)
 
     def _look(self) -> None:
-        """Let cameras look; what they find becomes tasks, and what lies elsewhere moves those not yet done."""
+        """Let lidars and cameras look.
+
+        What cameras find becomes tasks, and what lies elsewhere moves those not yet done.
+        """
+        if self._ground is not None:
+            self._ground.look(self.time_s)
         if self._camera_search is None:
             return
         for found, event in self._camera_search.look(self.time_s):

@@ -162,7 +162,7 @@ class _Driver:
             for path in words(here, (float(place[0]), float(place[1]), heading), radius_m)
         ]
         paths.sort(key=lambda path: path.length_m)
-        seen, step_m = self.ground.seen.points_in(np.argwhere(self.ground.seen.occupied)), self.params.step_m
+        seen, step_m = np.argwhere(self.ground.seen.occupied), self.params.step_m
         for certainty in PASSES:
             for path in paths:
                 near = path.poses(step_m / 2)[:, :2]
