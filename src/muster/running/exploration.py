@@ -34,6 +34,11 @@ class Exploration:
         Its rules say what tasks need; its robots are those that explore.
     ground : ExploredGround
         The ground as the team knows it.
+
+    Attributes
+    ----------
+    count, seen : int, set of str
+        How many frontiers became tasks; the tasks of those that are none any more.
     """
 
     def __init__(self, mission: Mission, ground: ExploredGround) -> None:
@@ -42,6 +47,7 @@ class Exploration:
         self._due_s = -math.inf
         self._open: dict[str, tuple[float, float]] = {}
         self.count = 0
+        self.seen: set[str] = set()
 
     def look(self, executor: Executor, now: float) -> None:
         """Cancel the tasks of frontiers that are none any more, and add those of new ones."""
@@ -63,6 +69,7 @@ class Exploration:
         for name, at in list(self._open.items()):
             if not is_near_frontier(cells, self._ground, at, self._apart_m(body)):
                 del self._open[name]
+                self.seen.add(name)
                 executor.report(Event(at_s=executor.now_s, cancel_task=name))
 
     def _add_new(self, executor: Executor, body: Body) -> None:

@@ -125,14 +125,17 @@ class UnknownGround:
     def with_ground(self, report: Report) -> Report:
         """Return a report with what was explored, and ways beside those with the map."""
         driven, known = (sum(getattr(way, name) for way in self._ways.values()) for name in ("driven_m", "with_map_m"))
+        seen: set[str] = set() if self._exploration is None else self._exploration.seen
         return replace(
             report,
+            tasks_lost=tuple((task, why) for task, why in report.tasks_lost if task not in seen),
             ground=GroundReport(
                 explored_m2=self._shown.explored_m2,
                 driven_m=driven,
                 with_map_m=known,
                 ways_closed=self._turned,
                 frontiers=0 if self._exploration is None else self._exploration.count,
+                frontiers_seen=len(seen),
             ),
         )
 

@@ -130,8 +130,9 @@ class GroundReport:
         map.
     ways_closed
         how often an obstacle appeared in the way of a robot.
-    frontiers
-        how many frontiers became tasks.
+    frontiers, frontiers_seen
+        how many frontiers became tasks, and how many of those were given up as it was seen what lies behind; these are
+        in no list of tasks.
     """
 
     explored_m2: float
@@ -139,6 +140,7 @@ class GroundReport:
     with_map_m: float
     ways_closed: int
     frontiers: int
+    frontiers_seen: int
 
 
 @dataclass(frozen=True)
