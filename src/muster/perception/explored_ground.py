@@ -14,8 +14,10 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Bools, Floats, Grid, Indices
@@ -28,6 +30,9 @@ from muster.motion.paths.on_grid import without_repetitions
 from muster.motion.paths.planner import disconnected, not_free
 from muster.perception.occupancy_map import OccupancyMap
 
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
+
 CERTAIN, POSSIBLE = PASSES = (1, -1)
 """The two passes: which cells count as free."""
 _HALF = math.sqrt(0.5)
@@ -35,6 +40,12 @@ _SPARE = 0.15
 """Of a cell by which ways that are free for certain are farther off: what is hit lies anywhere between hits."""
 _SNAP_CELLS = 4
 """Cells between a place that is free and the nearest cell that is free for certain, at most."""
+_TRIED = 50
+"""Cells to which an end of a way may be joined, at most."""
+_PUSH, _PUSHES = 0.1, 20
+"""Of a cell by which ways are pushed to the middle of what is narrow at a time, and how often."""
+_FITS = 0.98
+"""Of its radius that a body needs on both sides, where points of obstacles are all that is known of them."""
 _SLACK = 1e-6
 """Of a radius, by which a place may be too near to what was hit."""
 
@@ -119,11 +130,42 @@ class ExploredGround:
             blocked = not_free(True, False, a, b)
             assert blocked is not None
             return blocked, CERTAIN
-        for certainty in PASSES:
-            points = self._finder(body, certainty).way(a, b)
-            if points is not None:
-                return Path(without_repetitions(points)), certainty
-        return disconnected(a, b), CERTAIN
+        points = self._finder(body, CERTAIN).way(a, b)
+        if points is not None:
+            return Path(without_repetitions(points)), CERTAIN
+        found = None if self.seen.fills_cells else self._tight_way(body, a, b)
+        return disconnected(a, b) if found is None else Path(without_repetitions(found)), POSSIBLE
+
+    def _tight_way(self, body: Body, start: Floats, goal: Floats) -> Floats | None:
+        """Return a way of the second pass, in the middle of what is narrow; None where all that is left is too narrow.
+
+        Where a way does not fit after all its cells are blocked, and another is sought.
+        """
+        finder = self._finder(body, POSSIBLE)
+        tree = self.seen.tree()
+        while (points := finder.way(start, goal)) is not None:
+            points, narrow = self._in_the_middle(body, points, tree)
+            if not len(narrow):
+                return points
+            finder = self._made[body, POSSIBLE] = finder.without(narrow)
+        return None
+
+    def _in_the_middle(self, body: Body, points: Floats, tree: KDTree) -> tuple[Floats, Floats]:
+        """Push a way off what is too near; return it, and its places (n, 2) at which the body does not fit."""
+        cell_m = self.seen.frame.resolution_m
+        points = _dense(points, cell_m)
+        away, _ = tree.query(points)
+        near = np.flatnonzero(away < body.radius_m + _SPARE * cell_m)
+        near = near[(near > 0) & (near < len(points) - 1)]
+        for _ in range(_PUSHES):
+            away, nearest = tree.query(points[near])
+            short = away < body.radius_m + _SPARE * cell_m
+            if not short.any():
+                break
+            off = points[near] - tree.data[nearest]
+            points[near[short]] += (_PUSH * cell_m / np.maximum(away, 1e-9))[short, None] * off[short]
+        away, _ = tree.query(points[near])
+        return points, points[near[away < body.radius_m * _FITS]]
 
     def lengths(self, body: Body, exits: Floats, entries: Floats) -> Floats:
         """Return the lengths (n, m) of ways from exits (n, d) to entries (m, d), metres; inf where there is none."""
@@ -147,11 +189,11 @@ class ExploredGround:
     def is_clear(self, body: Body, points: Floats, certainty: int, cells: Indices) -> bool:
         """Return whether no obstacle in cells (n, 2) is too near to the line through points (k, 2).
 
-        A way of the second pass may be nearer by a cell's diagonal than the body is wide.
+        A way of the second pass may be a little nearer than the body is wide.
         """
         if not len(cells):
             return True
-        spare = _SLACK * body.radius_m if certainty == CERTAIN else 2 * _HALF * self.seen.frame.resolution_m
+        spare = (_SLACK if certainty == CERTAIN else 1 - _FITS) * body.radius_m
         return bool(self.seen.from_line_m(points, cells).min() >= max(body.radius_m - spare, 0.0))
 
     def is_free(self, body: Body, points: Floats) -> bool:
@@ -170,7 +212,7 @@ class ExploredGround:
     def _finder(self, body: Body, certainty: int) -> _Finder:
         key = (body, certainty)
         if key not in self._made:
-            self._made[key] = _Finder(self.seen.frame, self._blocked(body, certainty))
+            self._made[key] = _Finder(self.seen.frame, self._blocked(body, certainty), self.seen.clearances)
         return self._made[key]
 
     def _blocked(self, body: Body, certainty: int) -> Bools:
@@ -202,8 +244,8 @@ class ExploredGround:
 class _Finder:
     """Shortest ways through the free cells of one pass; ends beside them are joined to the nearest."""
 
-    def __init__(self, frame: Grid, blocked: Bools) -> None:
-        self.blocked = blocked
+    def __init__(self, frame: Grid, blocked: Bools, clearances: npt.NDArray[np.float32]) -> None:
+        self.blocked, self._clearances = blocked, clearances
         self._grid = Grid(blocked, frame.resolution_m, frame.origin)
         self._finder = PathFinder(GridSpace(self._grid))
 
@@ -213,6 +255,13 @@ class _Finder:
             return None
         found = self._finder.path(begin, end)
         return None if isinstance(found, NoPath) else np.concatenate([[start], found.points, [goal]])
+
+    def without(self, places: Floats) -> _Finder:
+        """Return the finder of the same cells, with those blocked, too, that places (n, 2) are in."""
+        blocked = self.blocked.copy()
+        columns, rows = np.floor(self._grid.to_grid(places)).astype(np.int64).T
+        blocked[np.clip(rows, 0, blocked.shape[0] - 1), np.clip(columns, 0, blocked.shape[1] - 1)] = True
+        return _Finder(self._grid, blocked, self._clearances)
 
     def sees(self, points: Floats) -> bool:
         return self._finder.clear(points)
@@ -240,13 +289,28 @@ class _Finder:
         if 0 <= i < height and 0 <= j < width and not self.blocked[i, j]:
             return place
         top, left = max(0, i - cells), max(0, j - cells)
-        free_ = np.argwhere(~self.blocked[top : i + cells + 1, left : j + cells + 1])
-        if not len(free_):
-            return None
-        centres = free_ + np.array([top + 0.5, left + 0.5])
-        away = np.hypot(centres[:, 0] - row, centres[:, 1] - column)
-        nearest = int(np.argmin(away))
-        if away[nearest] > cells:
-            return None
-        joined: Floats = self._grid.to_map(centres[None, nearest, ::-1])[0]
-        return joined
+        free_ = np.argwhere(~self.blocked[top : i + cells + 1, left : j + cells + 1]) + np.array([top, left])
+        apart = np.hypot(free_[:, 0] + 0.5 - row, free_[:, 1] + 0.5 - column)
+        order = np.argsort(apart, kind="stable")
+        for k in order[apart[order] <= cells][:_TRIED]:
+            if self._gets_off(np.array([row, column]), free_[k] + 0.5):
+                joined: Floats = self._grid.to_map(free_[None, k, ::-1] + 0.5)[0]
+                return joined
+        return None
+
+    def _gets_off(self, start: Floats, end: Floats) -> bool:
+        """Return whether a leg, in cells, only leads away from obstacles, as far as cells tell."""
+        count = 2 + int(2 * np.abs(end - start).max())
+        cells = np.floor(np.linspace(start, end, count)).astype(np.int64)
+        height, width = self.blocked.shape
+        away = self._clearances[np.clip(cells[:, 0], 0, height - 1), np.clip(cells[:, 1], 0, width - 1)]
+        return bool(away.min() >= away[0] - 1.5 * self._grid.resolution_m)
+
+
+def _dense(points: Floats, step_m: float) -> Floats:
+    """Return points (n, 2) on a line, not farther apart than a step."""
+    pieces = [
+        np.linspace(a, b, max(1, math.ceil(math.dist(a, b) / step_m)), endpoint=False)
+        for a, b in zip(points[:-1], points[1:], strict=True)
+    ]
+    return np.concatenate([*pieces, points[-1:]])

@@ -9,12 +9,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from muster.motion.grid import Bools, Floats, Grid, Indices
 from muster.perception.laser import Scanner
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
 
 Counts = npt.NDArray[np.int32]
 
@@ -131,6 +135,12 @@ class OccupancyMap:
             return math.inf
         apart = self.frame.to_grid(self.points_in(near + np.array([top, left]))) - self.frame.to_grid(place[None])
         return float(np.linalg.norm(self._gaps(apart, 0.5), axis=1).min() * cell_m)
+
+    def tree(self) -> KDTree:
+        """Return the obstacles' points (n, 2) as a tree that finds the nearest of them."""
+        from scipy.spatial import KDTree
+
+        return KDTree(self.points_in(np.argwhere(self.occupied)).reshape(-1, 2))
 
     def from_line_m(self, points: Floats, cells: Indices) -> Floats:
         """Return the distances (n,) of the obstacles in cells (n, 2) from the line through points (k, 2), metres."""

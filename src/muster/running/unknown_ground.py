@@ -164,9 +164,7 @@ class UnknownGround:
                 lidar.unsent.clear()
         return np.concatenate(fresh), changed
 
-    def _scan_of(
-        self, name: str, number: int, told: Telemetry | None, said: Mapping[str, Telemetry | None]
-    ) -> Scan:
+    def _scan_of(self, name: str, number: int, told: Telemetry | None, said: Mapping[str, Telemetry | None]) -> Scan:
         """One scan from where the robot truly is, with the pose that it takes for its own, as far as it is heard."""
         (x, y), heading = self._world.positions[number, :2], float(self._world.headings[number])
         if told is not None:
@@ -233,4 +231,3 @@ def _is_heard(said: Telemetry | None, now: float, dt_s: float) -> bool:
 def unknown_ground_for(mission: Mission, unknown: bool, explore: bool) -> UnknownGround | None:
     """Return the ground of a run whose robots have no map; None where they have it."""
     return UnknownGround(mission, explore=explore) if unknown else None
-

@@ -12,6 +12,7 @@ from muster.state.explored_map import UNSEEN, ExploredMap
 if TYPE_CHECKING:
     from muster.state.mission_state import MissionState
 
+
 @happens("ground_unknown", "robots have no map, and plan by what they see", mark=words.CHANGE)
 class GroundUnknown(ExecutionEvent):
     """A run begins whose robots have no map: the plan may count on what they do not know."""
