@@ -135,7 +135,7 @@ class Simulation:
             self._camera_search.resume(begun.bodies["found"])
         if ground is not None:
             ground.begin(self._world, self._robots.ports, self._executor)
-            self._executor.plan_again(GroundUnknown())
+            self._executor.plan_again(GroundUnknown(cell_m=ground.cell_m))
         self._tick()
 
     @property

@@ -100,6 +100,11 @@ class UnknownGround:
         self.look(world.time_s)
 
     @property
+    def cell_m(self) -> float:
+        """The side of a cell of the map, metres."""
+        return round(self.ground.seen.frame.resolution_m, 6)
+
+    @property
     def due_s(self) -> float:
         """When robots scan next."""
         return min((lidar.at_s for lidar in self._lidars.values()), default=-math.inf) + LOOK_S

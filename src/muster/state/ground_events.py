@@ -13,9 +13,14 @@ if TYPE_CHECKING:
     from muster.state.mission_state import MissionState
 
 
-@happens("ground_unknown", "robots have no map, and plan by what they see", mark=words.CHANGE)
+@happens("ground_unknown", "robots have no map, and plan by what they see, in cells of {cell_m} m", mark=words.CHANGE)
 class GroundUnknown(ExecutionEvent):
-    """A run begins whose robots have no map: the plan may count on what they do not know."""
+    """Robots begin without a map, and build one of such cells: the plan may count on what they do not know."""
+
+    cell_m: float
+
+    def change(self, state: MissionState) -> None:
+        state.explored = None
 
 
 @happens("map_grows", words.map_grows, mark=words.DETAIL)
