@@ -11,6 +11,7 @@ those that may be free.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
@@ -311,6 +312,6 @@ def _dense(points: Floats, step_m: float) -> Floats:
     """Return points (n, 2) on a line, not farther apart than a step."""
     pieces = [
         np.linspace(a, b, max(1, math.ceil(math.dist(a, b) / step_m)), endpoint=False)
-        for a, b in zip(points[:-1], points[1:], strict=True)
+        for a, b in itertools.pairwise(points)
     ]
     return np.concatenate([*pieces, points[-1:]])

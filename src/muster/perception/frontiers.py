@@ -49,7 +49,7 @@ def frontiers(ground: ExploredGround, body: Body, places: Floats) -> list[tuple[
     if not long_enough:
         return []
     targets = ground.seen.centres(np.array([_middle(group) for group in long_enough]))
-    reached = np.isfinite(ground.lengths(body, places, targets)).any(axis=0)
+    reached = np.isfinite(ground.lengths(body, places, targets).min(axis=0)).tolist()
     return [
         (target, len(group) * cell_m)
         for target, group, is_reached in zip(targets, long_enough, reached, strict=True)

@@ -37,8 +37,8 @@ class Exploration:
 
     Attributes
     ----------
-    count, seen : int, set of str
-        How many frontiers became tasks; the tasks of those that are none any more.
+    tasks : set of str
+        The tasks that frontiers became.
     """
 
     def __init__(self, mission: Mission, ground: ExploredGround) -> None:
@@ -46,8 +46,7 @@ class Exploration:
         self._type = _open_type(mission)
         self._due_s = -math.inf
         self._open: dict[str, tuple[float, float]] = {}
-        self.count = 0
-        self.seen: set[str] = set()
+        self.tasks: set[str] = set()
 
     def look(self, executor: Executor, now: float) -> None:
         """Cancel the tasks of frontiers that are none any more, and add those of new ones."""
@@ -61,23 +60,26 @@ class Exploration:
         if not bodies:
             return
         body = min(bodies, key=lambda one: one.radius_m)
-        self._cancel_seen(executor, body)
-        self._add_new(executor, body)
+        here = np.array([state.position[:2] for state in executor.crew.values() if not state.out])
+        self._cancel_seen(executor, body, here)
+        self._add_new(executor, body, here)
 
-    def _cancel_seen(self, executor: Executor, body: Body) -> None:
+    def _cancel_seen(self, executor: Executor, body: Body, here: Floats) -> None:
+        """Cancel the tasks of frontiers that are none any more, or that no robot can reach as the map is now."""
+        if not self._open:
+            return
         cells = frontier_cells(self._ground, body)
-        for name, at in list(self._open.items()):
-            if not is_near_frontier(cells, self._ground, at, self._apart_m(body)):
+        reached = np.isfinite(self._ground.lengths(body, here, np.array([*self._open.values()])).min(axis=0)).tolist()
+        for (name, at), is_reached in zip(list(self._open.items()), reached, strict=True):
+            if not (is_reached and is_near_frontier(cells, self._ground, at, self._apart_m(body))):
                 del self._open[name]
-                self.seen.add(name)
                 executor.report(Event(at_s=executor.now_s, cancel_task=name))
 
-    def _add_new(self, executor: Executor, body: Body) -> None:
-        here = [state.position[:2] for state in executor.crew.values() if not state.out]
+    def _add_new(self, executor: Executor, body: Body, here: Floats) -> None:
         most = PER_ROBOT * len(here)
         if len(self._open) >= most:
             return
-        for place, _ in frontiers(self._ground, body, np.array(here)):
+        for place, _ in frontiers(self._ground, body, here):
             known = [*self._open.values()]
             if len(known) >= most:
                 return
@@ -85,13 +87,13 @@ class Exploration:
                 self._add(executor, place)
 
     def _add(self, executor: Executor, place: Floats) -> None:
-        self.count += 1
         at = (round(float(place[0]), 4), round(float(place[1]), 4))
-        task = Task(id=f"frontier-{self.count}", position=at, type=self._type, priority=PRIORITY)
+        task = Task(id=f"frontier-{len(self.tasks) + 1}", position=at, type=self._type, priority=PRIORITY)
         while task.id in executor.ledger.tasks:
             task = replace(task, id=task.id + "'")
         if executor.report_if_it_fits(Event(at_s=executor.now_s, new_task=task)):
             self._open[task.id] = at
+            self.tasks.add(task.id)
 
     def _apart_m(self, body: Body) -> float:
         """How near to its frontier a task is, at most."""

@@ -57,7 +57,7 @@ class ShownMap:
         rows, columns = self._size
         padded = np.zeros((rows * self._wide, columns * self._wide), dtype=np.bool_)
         padded[: cells.shape[0], : cells.shape[1]] = cells
-        wide: Bools = padded.reshape(rows, self._wide, columns, self._wide).any(axis=(1, 3))
+        wide: Bools = np.any(padded.reshape(rows, self._wide, columns, self._wide), axis=(1, 3))
         return wide
 
 

@@ -8,12 +8,15 @@ import time
 from collections.abc import Collection, Sequence
 from contextlib import closing
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from muster.execution import Executor, Recorder, Status, broken_off, report_of, status_of, travel_of, way_of
+from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.mission.supported_features import require_carried_out
+from muster.motion.maps.ros_yaml import write_ros_map
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
@@ -85,6 +88,7 @@ class Simulation:
         there = mission if begun is None else begun.standing(mission)
         require_carried_out(mission)
         require_geometry(mission, "a simulated run")
+        robot_paths: RobotPaths | None
         if ground is not None:
             mission, robot_paths = ground.mission, ground.paths
         else:
@@ -257,6 +261,19 @@ class Simulation:
         """What cameras see, where the mission has tags."""
         return self._camera_search
 
+    def save_map(self, file: str | Path) -> None:
+        """Write the map that robots without one have built, in the form of ROS: a file (.yaml), its image beside it.
+
+        Raises
+        ------
+        ParameterError
+            if the robots have the map.
+        """
+        if self._ground is None:
+            raise ParameterError(f"save_map: {file}; expected robots without a map")
+        seen = self._ground.ground.seen
+        write_ros_map(Path(file), seen.known, seen.occupied, seen.frame)
+
     def close(self) -> None:
         """Give back what pictures hold of the graphics library, and the thread that searches."""
         if self._standing is not None and self._standing.improver is not None:
@@ -353,4 +370,6 @@ def carry_out(
                 for event in simulation.events.since(told):
                     request.on_event(event)
                 told = simulation.events.total
+        if request.save_map is not None:
+            simulation.save_map(request.save_map)
         return simulation.result()

@@ -130,17 +130,17 @@ class UnknownGround:
     def with_ground(self, report: Report) -> Report:
         """Return a report with what was explored, and ways beside those with the map."""
         driven, known = (sum(getattr(way, name) for way in self._ways.values()) for name in ("driven_m", "with_map_m"))
-        seen: set[str] = set() if self._exploration is None else self._exploration.seen
+        tasks: set[str] = set() if self._exploration is None else self._exploration.tasks
         return replace(
             report,
-            tasks_lost=tuple((task, why) for task, why in report.tasks_lost if task not in seen),
+            tasks_lost=tuple((task, why) for task, why in report.tasks_lost if task not in tasks),
             ground=GroundReport(
                 explored_m2=self._shown.explored_m2,
                 driven_m=driven,
                 with_map_m=known,
                 ways_closed=self._turned,
-                frontiers=0 if self._exploration is None else self._exploration.count,
-                frontiers_seen=len(seen),
+                frontiers=len(tasks),
+                frontiers_seen=len(tasks - set(report.tasks_done)),
             ),
         )
 
@@ -205,6 +205,7 @@ class UnknownGround:
         self._told = events.total
 
     def _measure_way(self, event: ExecutionEvent, driven: Mapping[str, float]) -> None:
+        names: tuple[str, ...]
         if isinstance(event, Arrives | RobotAtEnd):
             names = (event.robot,)
         elif isinstance(event, Ends):

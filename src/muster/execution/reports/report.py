@@ -131,8 +131,8 @@ class GroundReport:
     ways_closed
         how often an obstacle appeared in the way of a robot.
     frontiers, frontiers_seen
-        how many frontiers became tasks, and how many of those were given up as it was seen what lies behind; these are
-        in no list of tasks.
+        how many frontiers became tasks, and how many of those no robot had to go to, mostly as others saw what lies
+        behind; these are in no list of tasks.
     """
 
     explored_m2: float
