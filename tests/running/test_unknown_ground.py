@@ -11,7 +11,8 @@ from muster.mission.model import Event
 from muster.motion.map_world import World
 from muster.motion.maps.occupancy_rules import read_grid
 from muster.running.run_request import RunRequest
-from muster.state import MissionState
+from muster.state import MissionState, checkpoint_of, restored
+from muster.state.explored_map import FREE
 from muster_studies.unknown.scenes import building, random_world
 from muster_studies.unknown.study import carried_out
 
@@ -116,16 +117,17 @@ def test_frontiers_become_tasks_until_all_is_explored():
     assert least > 0.99
 
 
-def test_events_tell_the_map_and_the_state_folds_it():
+def test_events_tell_the_map_from_its_beginning_and_the_state_folds_it():
     mission = room(*POCKET, tasks=[(11.0, 4.0)])
-    events = []
-    simulate(mission, solve(mission, "greedy"), unknown=True, on_event=events.append)
-    explored = MissionState.after(mission, events).explored
-    rows = np.array(explored.rows)
-    place = np.floor(np.array([6.1, 4.0]) / explored.cell_m).astype(int)
-    near = rows[place[1] - 1 : place[1] + 2, place[0] - 3 : place[0] + 4]
-    assert (near == 2).any()
-    assert 0 < explored.explored_m2 <= 96
+    run = Simulation(mission, solve(mission, "greedy"), unknown=True)
+    while not run.done:
+        run.advance(run.time_s + 5.0)
+    explored = MissionState.after(mission, run.events).explored
+    assert np.array_equal(explored.rows, run._ground._shown._told)
+    assert explored == run.state.explored
+    row, column = np.floor(np.array([2.0, 1.0]) / explored.cell_m).astype(int)
+    assert explored.rows[row][column] == FREE  # where the robot began
+    assert restored(mission, checkpoint_of(run.state)).explored == explored
 
 
 def test_the_map_that_was_built_is_saved_as_a_map_of_ros(tmp_path):

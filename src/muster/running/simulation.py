@@ -138,8 +138,8 @@ class Simulation:
         if begun is not None and self._camera_search is not None:
             self._camera_search.resume(begun.bodies["found"])
         if ground is not None:
-            ground.begin(self._world, self._robots.ports, self._executor)
             self._executor.plan_again(GroundUnknown(cell_m=ground.cell_m))
+            ground.begin(self._world, self._robots.ports, self._executor)
         self._tick()
 
     @property
