@@ -85,6 +85,23 @@ def test_no_fly_zones_and_doors_are_known_by_rule():
     assert run.result().tasks_done == ()
 
 
+@pytest.mark.parametrize("world", ["kinematic", "physics"])
+def test_the_border_of_a_no_fly_zone_is_no_obstacle_to_those_below(world):
+    if world == "physics":
+        pytest.importorskip("mujoco")
+    across = Zone(polygon=((5.0, 0.0), (6.0, 0.0), (6.0, 8.0), (5.0, 8.0)), forbidden_to=("air",))
+    mission = room(tasks=[(11.0, 4.0)], zones=(across,))
+    drone = Robot(id="drone", position=(2.0, 6.0), radius_m=0.2, kind="air", kinematics="quadcopter")
+    mission = replace(mission, robots=(*mission.robots, drone))
+    run = Simulation(mission, solve(mission, "greedy"), unknown=True, world=world)
+    while not run.done:
+        run.advance(run.time_s + 5.0)
+    seen = run._ground.ground.seen
+    at = seen.centres(np.argwhere(seen.occupied))
+    assert not ((np.abs(at[:, 0] - 5.5) < 0.6) & (np.abs(at[:, 1] - 4.0) < 3.8)).any()
+    assert run.result().tasks_done == ("t_0",)
+
+
 def test_what_a_silent_robot_sees_reaches_the_team_when_it_is_heard():
     mission = room(
         (3.0, 1.0, 0.3, 6.0),

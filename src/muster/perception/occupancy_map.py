@@ -30,15 +30,26 @@ _INSIDE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """One scan: where the scanner takes itself to be (x, y, heading in the map frame), and its ranges in metres.
+    """One scan.
 
-    `ignored` are discs (m, 3) of x, y, radius in which hits are no obstacles: other robots, where they say that they
-    are.
+    Parameters
+    ----------
+    pose : tuple of float
+        Where the scanner takes itself to be: x, y, heading in the map frame.
+    ranges : ndarray, shape (n,)
+        Of its beams, metres; inf where a beam met nothing.
+    hits : ndarray of bool, shape (n,)
+        Which beams met an obstacle; others that end met something that moves, or that is no thing.
     """
 
     pose: tuple[float, float, float]
     ranges: Floats
-    ignored: Floats
+    hits: Bools
+
+    @classmethod
+    def of(cls, pose: tuple[float, float, float], ranges: Floats) -> Scan:
+        """Return a scan all of whose beams that end met obstacles."""
+        return cls(pose, ranges, np.isfinite(ranges))
 
 
 @dataclass(eq=False)
@@ -220,12 +231,8 @@ def _between(place: float, ends: Floats, most: int) -> tuple[int, int]:
 
 
 def _hit_points(scan: Scan, scanner: Scanner) -> tuple[Floats, Floats]:
-    """Return the points that beams hit, (n, 2) in the map frame, and the same a little way on."""
-    hit = np.isfinite(scan.ranges)
-    angles = scan.pose[2] + scanner.bearings[hit]
+    """Return the points of obstacles that beams hit, (n, 2) in the map frame, and the same a little way on."""
+    angles = scan.pose[2] + scanner.bearings[scan.hits]
     ahead = np.column_stack([np.cos(angles), np.sin(angles)])
-    points = np.array(scan.pose[:2]) + scan.ranges[hit, None] * ahead
-    for x, y, radius in scan.ignored:
-        kept = np.hypot(points[:, 0] - x, points[:, 1] - y) > radius
-        points, ahead = points[kept], ahead[kept]
+    points = np.array(scan.pose[:2]) + scan.ranges[scan.hits, None] * ahead
     return points, points + _INSIDE * ahead

@@ -16,8 +16,8 @@ import numpy as np
 
 from muster.execution.reports.report import GroundReport, Report
 from muster.mission.model import Map, Mission, Robot
-from muster.motion.grid import Floats, Indices
-from muster.motion.map_world import World, body_of
+from muster.motion.grid import Bools, Floats, Indices
+from muster.motion.map_world import Body, World, body_of
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.unreachable_places import checked_world
 from muster.perception.explored_ground import CERTAIN, ExploredGround, map_to_build, ruled_world
@@ -38,6 +38,8 @@ LOOK_S = 0.5
 """Seconds between two scans of a robot that moves."""
 SHOW_S = 2.0
 """Seconds between two events that tell how the map has grown."""
+_ON_BORDER_M = 0.02
+"""From the border of a zone in which a beam ends there."""
 _APART_CELLS = 3
 """Cells around where another robot says that it is in which hits are no obstacles."""
 
@@ -170,18 +172,36 @@ class UnknownGround:
         return np.concatenate(fresh), changed
 
     def _scan_of(self, name: str, number: int, told: Telemetry | None, said: Mapping[str, Telemetry | None]) -> Scan:
-        """One scan from where the robot truly is, with the pose that it takes for its own, as far as it is heard."""
+        """One scan from where the robot truly is, with the pose that it takes for its own, as far as it is heard.
+
+        Where another robot says that it is, and on the border of a zone that is closed by rule, there is no obstacle.
+        """
         (x, y), heading = self._world.positions[number, :2], float(self._world.headings[number])
         if told is not None:
             (x, y), heading = told.position[:2], told.heading
-        margin_m = _APART_CELLS * self.ground.seen.frame.resolution_m
-        others = [
-            (*other.position[:2], self._robot(one).radius_m + margin_m)
-            for one, other in said.items()
-            if other is not None and one != name
-        ]
         ranges = self._world.scan(name, LIDAR)
-        return Scan((float(x), float(y), heading), ranges, np.array(others, dtype=np.float64).reshape(-1, 3))
+        scan = Scan.of((float(x), float(y), heading), ranges)
+        angles = heading + LIDAR.bearings[scan.hits]
+        ends = np.column_stack([x + ranges[scan.hits] * np.cos(angles), y + ranges[scan.hits] * np.sin(angles)])
+        is_thing = ~self._on_ruled_borders(body_of(self._robot(name)), ends)
+        margin_m = _APART_CELLS * self.ground.seen.frame.resolution_m
+        for one, other in said.items():
+            if other is not None and one != name:
+                away = np.linalg.norm(ends - other.position[:2], axis=1)
+                is_thing &= away > self._robot(one).radius_m + margin_m
+        scan.hits[scan.hits] = is_thing
+        return scan
+
+    def _on_ruled_borders(self, body: Body, places: Floats) -> Bools:
+        """Whether places (n, 2) are on the border of a zone that a body may not enter, and that is no obstacle."""
+        import shapely
+
+        image = self._truth.image
+        within_m = _ON_BORDER_M if image is None else image.resolution_m
+        on = np.zeros(len(places), dtype=np.bool_)
+        for area in self.paths.world.stopping(body, False):
+            on |= shapely.distance(area.polygon.exterior, shapely.points(places)) <= within_m
+        return on
 
     def _robot(self, name: str) -> Robot:
         return self._executor.crew[name].robot

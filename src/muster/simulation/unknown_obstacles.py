@@ -124,7 +124,7 @@ class _Driver:
 
     def step(self, here: Pose, ranges: Floats) -> Pose | NoPath:
         """Return the pose after the next step, given a scan here."""
-        fresh, changed = self.ground.seen.see(Scan(here, ranges, NO_DISCS), self.params.scanner)
+        fresh, changed = self.ground.seen.see(Scan.of(here, ranges), self.params.scanner)
         if changed:
             self.ground.grown()
         if self._ahead:
