@@ -59,7 +59,6 @@ class _Lidar:
     """The lidar of a robot: where it scanned last, and the scans that have not reached the team."""
 
     at: Floats = field(default_factory=lambda: np.full(2, np.inf))
-    at_s: float = -math.inf
     unsent: list[Scan] = field(default_factory=list)
 
 
@@ -72,6 +71,11 @@ class UnknownGround:
         The mission with its true map.
     explore : bool
         Whether frontiers become tasks; of themselves they do where there are tags to be found.
+
+    Attributes
+    ----------
+    due_s : float
+        When robots scan next.
 
     Raises
     ------
@@ -95,6 +99,7 @@ class UnknownGround:
         self._turned = 0
         self._told = 0
         self._shown_s = -math.inf
+        self.due_s = -math.inf
 
     def begin(self, world: SimulatedWorld, ports: Mapping[str, RobotPort], executor: Executor) -> None:
         """Scan for the first time, in a world whose robots these are."""
@@ -106,13 +111,11 @@ class UnknownGround:
         """The side of a cell of the map, metres."""
         return round(self.ground.seen.frame.resolution_m, 6)
 
-    @property
-    def due_s(self) -> float:
-        """When robots scan next."""
-        return min((lidar.at_s for lidar in self._lidars.values()), default=-math.inf) + LOOK_S
-
     def look(self, now: float) -> None:
-        """Let robots scan, go other ways where theirs turn out to be closed, and explore."""
+        """Let robots scan if that is due, go other ways where theirs turn out to be closed, and explore."""
+        if now < self.due_s - 1e-9:
+            return
+        self.due_s = now + LOOK_S
         self._executor.set_clock(now)
         said = {name: port.telemetry() for name, port in self._ports.items()}
         fresh, changed = self._scan(now, said)
@@ -131,6 +134,7 @@ class UnknownGround:
 
     def with_ground(self, report: Report) -> Report:
         """Return a report with what was explored, and ways beside those with the map."""
+        self._measure_ways()
         driven, known = (sum(getattr(way, name) for way in self._ways.values()) for name in ("driven_m", "with_map_m"))
         tasks: set[str] = set() if self._exploration is None else self._exploration.tasks
         return replace(
@@ -152,15 +156,12 @@ class UnknownGround:
         for number, name in enumerate(self._world.ports):
             lidar = self._lidars.setdefault(name, _Lidar())
             place = self._world.positions[number, :2]
-            if now < lidar.at_s + LOOK_S - 1e-9:
-                continue
             still = math.dist(place, lidar.at) < self.ground.seen.frame.resolution_m
             if still and not lidar.unsent:
-                lidar.at_s = now
                 continue
             heard = _is_heard(said.get(name), now, self._world.dt_s)
             if not still:
-                lidar.at, lidar.at_s = place, now
+                lidar.at = place
                 told = said.get(name) if heard else None
                 lidar.unsent.append(self._scan_of(name, number, told, said))
             for scan in lidar.unsent if heard else ():
