@@ -6,8 +6,22 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from muster import Map, Mission, ParameterError, Robot, Simulation, Task, Zone, load, simulate, solve
-from muster.mission.model import Event
+from muster import (
+    Camera,
+    Found,
+    Map,
+    Mission,
+    ParameterError,
+    Robot,
+    Simulation,
+    Tag,
+    Task,
+    Zone,
+    load,
+    simulate,
+    solve,
+)
+from muster.mission.model import Event, Work
 from muster.motion.map_world import World
 from muster.motion.maps.occupancy_rules import read_grid
 from muster.running.run_request import RunRequest
@@ -132,6 +146,25 @@ def test_frontiers_become_tasks_until_all_is_explored():
     assert report.tasks_lost == ()
     assert report.ground.explored_m2 > 0.93 * (12 * 8 - 2 * 0.3 * 6)
     assert least > 0.99
+
+
+def test_what_cameras_find_while_robots_explore_becomes_a_task():
+    """Frontiers are tasks of themselves where there is something to be found; no task of the mission leads there."""
+    mission = room((4.0, 0.0, 0.3, 6.0), (8.0, 2.0, 0.3, 6.0), tasks=[])
+    drone = Robot(
+        id="drone",
+        position=(1.0, 2.0),
+        radius_m=0.2,
+        kind="air",
+        kinematics="quadcopter",
+        camera=Camera(fov_deg=120, tilt_deg=90),
+    )
+    tag = Tag(id=5, position=(10.0, 3.0))
+    mission = replace(mission, robots=(drone,), tags=(tag,), found=(Found(becomes=Work(duration_s=1.0)),))
+    report = simulate(mission, solve(mission, "greedy"), unknown=True)
+    assert "found-5" in [found.task for found in report.found]
+    assert "found-5" in report.tasks_done
+    assert report.ground.frontiers > 0
 
 
 def test_events_tell_the_map_from_its_beginning_and_the_state_folds_it():

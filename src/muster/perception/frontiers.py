@@ -15,16 +15,22 @@ _LEAST_CELLS = 3
 _AS_WIDE = np.ones((3, 3), dtype=np.bool_)
 
 
-def frontier_cells(ground: ExploredGround, body: Body) -> Bools:
-    """Return the cells that were seen, are free for a body, and border on such as were not seen and may be free."""
+def frontier_cells(ground: ExploredGround, body: Body, *, near: bool) -> Bools:
+    """Return the cells that were seen, are free for a body, and border on such as were not seen and may be free.
+
+    Parameters
+    ----------
+    near : bool
+        Whether only what was seen from near counts as seen.
+    """
     from scipy.ndimage import binary_dilation
 
-    free, known = ground.free_cells(body), ground.seen.known
+    free, known = ground.free_cells(body), ground.seen.near if near else ground.seen.known
     cells: Bools = free & known & binary_dilation(free & ~known, _AS_WIDE)
     return cells
 
 
-def frontiers(ground: ExploredGround, body: Body, places: Floats) -> list[tuple[Floats, float]]:
+def frontiers(ground: ExploredGround, body: Body, places: Floats, *, near: bool) -> list[tuple[Floats, float]]:
     """Return a place on each frontier that robots can reach, and the frontier's length in metres, the longest first.
 
     Parameters
@@ -35,11 +41,13 @@ def frontiers(ground: ExploredGround, body: Body, places: Floats) -> list[tuple[
         The robots' body.
     places : ndarray, shape (n, 2)
         Where robots are.
+    near : bool
+        Whether only what was seen from near counts as seen.
     """
     from scipy.ndimage import label
 
     cell_m = ground.seen.frame.resolution_m
-    numbers, count = label(frontier_cells(ground, body), _AS_WIDE)
+    numbers, count = label(frontier_cells(ground, body, near=near), _AS_WIDE)
     cells = np.argwhere(numbers > 0)
     parts = numbers[tuple(cells.T)]
     order = np.argsort(parts, kind="stable")

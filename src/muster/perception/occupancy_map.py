@@ -71,6 +71,8 @@ class OccupancyMap:
         How many beams ended in each cell; how many scans passed it.
     occupied : ndarray of bool
         Which cells hold an obstacle, as far as they were seen.
+    near : ndarray of bool
+        Which cells were seen from as near as was said to count.
     clearances : ndarray
         From the centre of each cell to the nearest point that was hit, or, where obstacles fill cells, between the
         squares of both; metres, inf beyond `clearance_m`.
@@ -82,13 +84,15 @@ class OccupancyMap:
     hits: Counts = field(init=False)
     passes: Counts = field(init=False)
     occupied: Bools = field(init=False)
+    near: Bools = field(init=False)
     clearances: npt.NDArray[np.float32] = field(init=False)
     _sums: Floats = field(init=False)
 
     def __post_init__(self) -> None:
         shape = self.frame.shape
         self.hits, self.passes = np.zeros(shape, dtype=np.int32), np.zeros(shape, dtype=np.int32)
-        self.occupied, self._sums = np.zeros(shape, dtype=np.bool_), np.zeros((*shape, 2))
+        self.occupied, self.near = np.zeros(shape, dtype=np.bool_), np.zeros(shape, dtype=np.bool_)
+        self._sums = np.zeros((*shape, 2))
         self.clearances = np.full(shape, np.inf, dtype=np.float32)
 
     @property
@@ -97,15 +101,15 @@ class OccupancyMap:
         known: Bools = (self.hits > 0) | (self.passes > 0)
         return known
 
-    def see(self, scan: Scan, scanner: Scanner) -> tuple[Indices, bool]:
-        """Enter a scan.
+    def see(self, scan: Scan, scanner: Scanner, near_m: float = 0.0) -> tuple[Indices, bool]:
+        """Enter a scan; cells that it sees within `near_m` count as near.
 
         Returns
         -------
         the cells (n, 2), rows and columns, that it found to be occupied and were not; and whether the map of obstacles
         changed at all.
         """
-        freed = self._pass(scan, scanner)
+        freed = self._pass(scan, scanner, near_m)
         points, inner = _hit_points(scan, scanner)
         columns, rows = np.floor(self.frame.to_grid(inner)).astype(np.int64).T
         height, width = self.frame.shape
@@ -190,7 +194,7 @@ class OccupancyMap:
         """Return what lies between along each axis (..., 2), in cells: between squares, where obstacles fill cells."""
         return np.maximum(np.abs(apart) - wide, 0.0) if self.fills_cells else apart
 
-    def _pass(self, scan: Scan, scanner: Scanner) -> bool:
+    def _pass(self, scan: Scan, scanner: Scanner, near_m: float) -> bool:
         """Count the cells that beams passed; return whether one is occupied no more.
 
         The centre of such a cell is nearer than both beams beside it reached, by a cell at least.
@@ -209,10 +213,12 @@ class OccupancyMap:
         beam = (bearing - np.float32(math.pi + scanner.bearings[0])) / np.float32(scanner.step_rad)
         first = np.floor(beam).astype(np.int32)
         least = np.concatenate([[0.0], np.minimum(reached[:-1], reached[1:]), [0.0]]).astype(np.float32)
-        passed = np.hypot(east, north) + 1.0 <= least[np.clip(first + 1, 0, len(least) - 1)]
+        away = np.hypot(east, north)
+        passed = away + 1.0 <= least[np.clip(first + 1, 0, len(least) - 1)]
         passed |= np.maximum(np.abs(east), np.abs(north)) <= 0.5  # it stands there
         part = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
         self.passes[part] += passed
+        self.near[part] |= passed & (away <= near_m / cell_m)
         freed = self.occupied[part] & passed
         freed[freed] = ~_are_occupied(self.hits[part][freed], self.passes[part][freed])
         self.occupied[part] &= ~freed

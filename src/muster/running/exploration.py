@@ -1,4 +1,7 @@
-"""Exploration: frontiers of the team's map become tasks, which are planned like any other ([yamauchi1997])."""
+"""Exploration: frontiers of the team's map become tasks, which are planned like any other ([yamauchi1997]).
+
+Where there are tags to be found, the frontiers are those of what cameras have been near enough to see.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +11,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.mission.model import Event, Mission, Task
+from muster.mission.model import Event, Mission, Robot, Task
 from muster.motion.grid import Floats
 from muster.motion.map_world import Body, body_of
 from muster.perception.explored_ground import ExploredGround
 from muster.perception.frontiers import frontier_cells, frontiers, is_near_frontier
+from muster.simulation.world_base import FLIGHT_M
 
 if TYPE_CHECKING:
     from muster.execution import Executor
@@ -21,8 +25,20 @@ LOOK_S = 2.0
 """Seconds between two looks at the frontiers, while robots are under way to some."""
 PRIORITY = 1e-3
 """Of the task of a frontier: the mission's own come first."""
+LEAST_LOOK_M = 1.0
+"""How near robots on the ground are to what their cameras see, at least."""
 PER_ROBOT = 3
 """Frontiers that are tasks at once, for each robot."""
+
+
+def looks_m(robot: Robot) -> float:
+    """Return how near a robot has to be to see with its camera what lies on the ground, metres; 0 without a camera.
+
+    It is the radius of the circle that the camera sees where it looks straight down, from where drones fly.
+    """
+    if robot.camera is None:
+        return 0.0
+    return max(LEAST_LOOK_M, FLIGHT_M * math.tan(math.radians(robot.camera.fov_deg) / 2))
 
 
 class Exploration:
@@ -44,6 +60,7 @@ class Exploration:
     def __init__(self, mission: Mission, ground: ExploredGround) -> None:
         self._mission, self._ground = mission, ground
         self._type = _open_type(mission)
+        self._near = bool(mission.tags)
         self._due_s = -math.inf
         self._open: dict[str, tuple[float, float]] = {}
         self.tasks: set[str] = set()
@@ -68,7 +85,7 @@ class Exploration:
         """Cancel the tasks of frontiers that are none any more, or that no robot can reach as the map is now."""
         if not self._open:
             return
-        cells = frontier_cells(self._ground, body)
+        cells = frontier_cells(self._ground, body, near=self._near)
         reached = np.isfinite(self._ground.lengths(body, here, np.array([*self._open.values()])).min(axis=0)).tolist()
         for (name, at), is_reached in zip(list(self._open.items()), reached, strict=True):
             if not (is_reached and is_near_frontier(cells, self._ground, at, self._apart_m(body))):
@@ -79,7 +96,7 @@ class Exploration:
         most = PER_ROBOT * len(here)
         if len(self._open) >= most:
             return
-        for place, _ in frontiers(self._ground, body, here):
+        for place, _ in frontiers(self._ground, body, here, near=self._near):
             known = [*self._open.values()]
             if len(known) >= most:
                 return

@@ -24,7 +24,7 @@ from muster.perception.explored_ground import CERTAIN, ExploredGround, map_to_bu
 from muster.perception.explored_paths import ExploredPaths, require_flat
 from muster.perception.laser import LIDAR
 from muster.perception.occupancy_map import Scan
-from muster.running.exploration import Exploration
+from muster.running.exploration import Exploration, looks_m
 from muster.running.explored_cells import ShownMap
 from muster.simulation import SimulatedWorld
 from muster.state.robot_events import RobotAtEnd
@@ -165,7 +165,7 @@ class UnknownGround:
                 told = said.get(name) if heard else None
                 lidar.unsent.append(self._scan_of(name, number, told, said))
             for scan in lidar.unsent if heard else ():
-                cells, altered = self.ground.seen.see(scan, LIDAR)
+                cells, altered = self.ground.seen.see(scan, LIDAR, looks_m(self._robot(name)))
                 fresh.append(cells)
                 changed |= altered
             if heard:
