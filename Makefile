@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: house standing demo test test-all test-alone quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-goods campaign-server campaign-faults campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
+.PHONY: house standing demo test test-all test-alone quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-byzantine campaign-goods campaign-server campaign-faults campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -48,7 +48,7 @@ docs: $(VENV)/documented
 	$(BIN)/python -m tools.docs_site
 
 docs-check: $(VENV)/developed
-	$(BIN)/python -m tools.docs_check $(DOCS)
+	$(BIN)/python -m tools.docs_check $(DOCS_FLAGS) $(DOCS)
 
 docs-check-long: $(VENV)/developed
 	$(BIN)/python -m tools.docs_check --long $(DOCS)
@@ -73,6 +73,9 @@ campaign-state: $(VENV)/developed
 
 campaign-auction: $(VENV)/developed
 	$(BIN)/python -m tests.muster_team.campaign $(CAMPAIGN_FLAGS)
+
+campaign-byzantine: $(VENV)/developed
+	$(BIN)/python -m tests.muster_team.byzantine $(CAMPAIGN_FLAGS)
 
 campaign-server: $(VENV)/developed
 	$(BIN)/python -m tests.muster_control.runs.campaign $(CAMPAIGN_FLAGS)
@@ -124,6 +127,10 @@ help:
 	@echo "make campaign-mixed  10,000 tiny missions in which rules of every kind meet, against every plan of each"
 	@echo "make campaign-auction  10,000 auctions without a centre, with random faults, in a simulated network"
 	@echo "                       (CAMPAIGN_FLAGS='--timed 2000': of missions with rules of time)"
+	@echo "make campaign-byzantine  10,000 teams of which one robot states what is not so; with CAMPAIGN_FLAGS='--orders'"
+	@echo "                       operators give orders that contradict each other"
+	@echo "make campaign-byzantine  10,000 teams of which one robot states what is not so; with CAMPAIGN_FLAGS='--orders'"
+	@echo "                       operators give orders that contradict each other"
 	@echo "make campaign-goods  carry out 2,000 missions with goods and batteries in which robots and stations fail"
 	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"
 	@echo "make campaign-faults  kill a server of mission control 100 times while its database is away; no order is lost"

@@ -142,3 +142,24 @@ def test_ties_go_to_the_lowest_task_then_the_lowest_robot():
         "firefly10": ("10",),
         "firefly2": (),
     }
+
+
+def test_a_task_with_more_or_nearer_dependants_is_preferred():
+    """Figure 3.2: (a) a task with three dependants before a nearer one without; (b) of two equally far, the one whose
+    dependants are nearer."""
+    robots = (muster.Robot(id="r_0", position=(0, 0)),)
+
+    def chosen_first(first, second, *dependants):
+        tasks = [muster.Task(id="1", position=first), muster.Task(id="2", position=second)]
+        tasks += [
+            muster.Task(id=str(number), position=position, prerequisites=(of,))
+            for number, (of, position) in enumerate(dependants, start=3)
+        ]
+        (route,) = muster.solve(muster.Mission(robots=robots, tasks=tuple(tasks)), "greedy").routes
+        return route.tasks[0]
+
+    near_second = [("2", (1.3, 0.1)), ("2", (1.3, -0.1)), ("2", (1.4, 0))]
+    assert chosen_first((-1, 0), (1.2, 0)) == "1"
+    assert chosen_first((-1, 0), (1.2, 0), *near_second) == "2"
+    far_from_first = [("1", (-4, 1)), ("1", (-4, -1)), ("1", (-5, 0))]
+    assert chosen_first((-1.2, 0), (1.2, 0), *far_from_first, *near_second) == "2"

@@ -1,4 +1,5 @@
-"""What docs/coverage.md names is there: paths, commands and their options, tables of studies."""
+"""What docs/coverage.md names is there: paths, commands and their options, tables of studies. Its commands are run, and
+their figures compared, by `tools.docs_check`."""
 
 import re
 import shlex
@@ -7,47 +8,31 @@ from pathlib import Path
 
 import click
 import pytest
+from tools.docs_check.pages import read_page
+from tools.docs_check.rows import read_rows
 
 from muster.cli import main
 from muster_studies.registry import STUDIES
 
-ROOT = Path(__file__).parents[2]
-TEXT = (ROOT / "docs" / "coverage.md").read_text(encoding="utf-8")
-COLUMNS = 5
+PAGE = Path(__file__).parents[2] / "docs" / "coverage.md"
+TEXT = PAGE.read_text(encoding="utf-8")
+ROWS = [row for item in read_page(PAGE) if item.kind == "rows" for row in read_rows(item.text, item.line)]
+COMMANDS = sorted({part for found in re.findall(r"`(muster [^`]+)`", TEXT) for part in found.split(" && ")})
 
 
-def _rows():
-    for line in TEXT.splitlines():
-        if line.startswith("| ") and not line.startswith("| section"):
-            yield [cell.strip() for cell in line.strip().strip("|").split("|")]
+def test_all_tables_of_documents_are_checked():
+    assert [row.text for row in ROWS] == [row.text for row in read_rows(TEXT) if len(row.cells) == 5]
+    assert len(ROWS) > 200
 
 
-ROWS = list(_rows())
-COMMANDS = sorted(set(re.findall(r"`muster ([^`]+)`", TEXT)))
-
-
-def test_every_row_has_its_cells_and_a_state():
-    for row in ROWS:
-        assert len(row) == COLUMNS, row
-        assert re.fullmatch(r"done(: .+)?|(differs|not): .+", row[4]), row
-
-
-def test_what_is_there_says_where_and_what_shows_it():
-    built = [row for row in ROWS if row[4].startswith(("done", "differs"))]
-    missing = [row for row in built if not (row[2] and (row[3] or "docs/" in row[2]))]
-    assert not missing
-
-
-def test_the_paths_are_there():
-    paths = {path for row in ROWS for cell in row[2:4] for path in re.findall(r"`([\w./-]+/[\w./-]*)`", cell)}
-    absent = {path for path in paths if not any((ROOT / base / path).exists() for base in ("", "src", "src/muster"))}
-    assert paths
-    assert not absent
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row.cells[0]} {row.cells[1][:40]}")
+def test_a_row_is_whole(row):
+    assert not list(row.problems())
 
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_the_commands_are_those_of_the_command(command):
-    verb, *words = shlex.split(command)
+    _, verb, *words = shlex.split(command)
     group = main.muster
     found = group.get_command(click.Context(group), verb)
     assert found is not None
@@ -60,6 +45,6 @@ def test_the_commands_are_those_of_the_command(command):
 
 
 def test_the_counts_are_those_of_the_rows():
-    states = Counter(row[4].partition(":")[0] for row in ROWS)
+    states = Counter(row.state for row in ROWS)
     (line,) = re.findall(r"Of (\d+) rows (\d+) are done, (\d+) differ, (\d+) are not there", TEXT)
     assert [int(number) for number in line] == [len(ROWS), states["done"], states["differs"], states["not"]]

@@ -2,8 +2,7 @@
 
 from hypothesis import strategies as st
 
-from muster_team.knowledge.messages import Claim, Declaration, Fact, Heartbeat, Message, RoundBids, Sold, Stage
-from muster_team.network.codec import FACTS
+from muster_team.knowledge.messages import FACTS, Claim, Declaration, Fact, Heartbeat, Message, RoundBids, Sold, Stage
 
 ROBOTS = ("r_0", "r_1", "r_2", "scout")
 TASKS = ("t_0", "t_1", "t_2", "t_3", "gate")

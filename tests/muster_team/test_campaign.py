@@ -72,7 +72,7 @@ def timed(seed):
 PLANTED = {  # which seed finds the fault, or one soon after it, and what it is: module, right, wrong
     "half of the team is enough": (
         12,
-        "knowledge.epoch_base",
+        "knowledge.rules",
         "len(self.robots) // 2 + 1",
         "(len(self.robots) + 1) // 2",
     ),

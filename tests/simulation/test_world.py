@@ -51,6 +51,18 @@ def test_telemetry_is_of_every_step():
     assert world.ports["r"].telemetry().velocity == pytest.approx((1.0, 0.0, 0.0))
 
 
+@pytest.mark.parametrize("arrival_m", [0.25, 0.5, 1.0])
+@pytest.mark.parametrize("law", ["thesis", "profile"])
+def test_undisturbed_robots_stop_at_the_arrival_distance_by_the_law_of_the_thesis_alone(law, arrival_m):
+    team = mission(robot(kinematics="differential-drive", yaw_rate_radps=1.8))
+    world = KinematicWorld(team, arrival_m=arrival_m, law=law)
+    world.ports["r"].send([Waypoint((5.0, 0.0, 0.0))])
+    assert until_idle(world, 20)
+    left = 5.0 - world.positions[0, 0]
+    assert left == pytest.approx(arrival_m if law == "thesis" else 0.0, abs=0.11 if law == "thesis" else 0.001)
+    assert left <= arrival_m + 1e-9
+
+
 def test_one_that_fails_stops_for_good_and_says_nothing():
     world = KinematicWorld(mission(robot(), robot("other", (0.0, 3.0))))
     port = world.ports["r"]

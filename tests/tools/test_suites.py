@@ -210,9 +210,15 @@ class TestCI:
         (step,) = (step for step in ci.steps(1, ["docs/maps.md"]) if step.name == "documents")
         assert "docs/maps.md" in step.command[-1]
 
+    def test_each_turn_runs_rows_of_its_share_and_of_the_change(self):
+        for turn in range(20, 30):
+            (step,) = (step for step in ci.steps(turn, []) if step.name == "documents")
+            assert step.command[2].startswith(f"DOCS_FLAGS=--turn {turn} --since ")
+            assert "docs/coverage.md" in step.command[-1].removeprefix("DOCS=").split()
+
     def test_everything_is_everything(self):
         commands = [step.command for step in ci.steps(1, None)]
-        assert ["make", "docs-check"] in commands
+        assert ["make", "docs-check", "DOCS_FLAGS=--every"] in commands
         assert sum(command[1] in {campaign.target for campaign in CAMPAIGNS} for command in commands) == len(CAMPAIGNS)
 
 

@@ -16,5 +16,9 @@
     <!-- docs-check: background COMMAND -->       a server, from here to the end of the page
     <!-- docs-check: numbers by COMMAND -->       up to `end`, every number with a decimal point is one that it prints
     <!-- docs-check: numbers from NAME -->        the same of docs/measured/NAME.json
+    <!-- docs-check: rows -->                     up to `end`, rows of tables; their commands run (rows.py)
     <!-- docs-check: end -->
+
+Of a page with rows `--turn N` runs a tenth of the rows, with `--since COMMIT` those besides that a change touches, and
+`--every` all. Without them the rows that take minutes are left out.
 """

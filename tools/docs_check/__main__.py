@@ -18,6 +18,7 @@ from tools.docs_check.commands import ROOT, command_lines, without_remark
 from tools.docs_check.outcomes import FAILED, Outcome, summary
 from tools.docs_check.page_run import timed_check
 from tools.docs_check.pages import read_page
+from tools.docs_check.rows import Due
 
 _SLOWEST = 10  # pages that are named
 
@@ -27,11 +28,16 @@ def pages() -> list[Path]:
     return [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
-def check(chosen: list[Path]) -> int:
+def has_rows(page: Path) -> bool:
+    """Return whether a page has rows with commands, of which each turn runs a tenth."""
+    return "<!-- docs-check: rows -->" in page.read_text(encoding="utf-8")
+
+
+def check(chosen: list[Path], due: Due) -> int:
     """Check pages, two at a time, each in a process of its own; returns the exit code."""
     begin = time.monotonic()
     with ProcessPoolExecutor(2, mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
-        found = list(pool.map(timed_check, chosen))
+        found = list(pool.map(partial(timed_check, due=due), chosen))
     outcomes: list[Outcome] = [outcome for _, of_page in found for outcome in of_page]
     print("\n".join(summary(outcomes)))
     print(f"{len(chosen)} pages, {time.monotonic() - begin:.0f} s")
@@ -74,10 +80,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tools.docs_check", description="Check what the documents show.")
     parser.add_argument("names", nargs="*", help="pages; with --long names of measurements and pictures")
     parser.add_argument("--long", action="store_true", help="make what takes more than a minute, and store it")
+    parser.add_argument("--turn", type=int, help="run a tenth of the rows, long ones too")
+    parser.add_argument("--since", metavar="COMMIT", help="with --turn: and the rows that a change since then touches")
+    parser.add_argument("--every", action="store_true", help="run all rows, long ones too")
     given = parser.parse_args()
     if given.long:
         return make_long(given.names)
-    return check([Path(name).resolve() for name in given.names] or pages())
+    due = Due.since(given.turn, given.since) if given.since else Due(given.turn, every=given.every)
+    return check([Path(name).resolve() for name in given.names] or pages(), due)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 RUN, LOOKED_UP, PARSED, SKIPPED = "run", "looked up", "parsed", "skipped"
-COMPARED, MEASURED, FAILED = "compared", "measured", "failed"
+COMPARED, MEASURED, FAILED, LEFT = "compared", "measured", "failed", "left to another turn"
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,7 @@ def summary(outcomes: Sequence[Outcome]) -> list[str]:
         f"outputs compared     {count[COMPARED, 'output']}",
         f"pictures compared    {count[COMPARED, 'picture']} made again, {count[MEASURED, 'picture']} as stored",
         f"numbers compared     {count[COMPARED, 'number']} with commands, {count[MEASURED, 'number']} as stored",
+        f"rows compared        {count[COMPARED, 'row']}, {count[LEFT, 'row']} left to other turns",
         f"commands stored      {count[MEASURED, 'command']} (docs/measured, by --long)",
     ]
     skipped = [outcome for outcome in outcomes if outcome.status == SKIPPED]

@@ -21,45 +21,56 @@ from typing import Any
 import yaml
 
 from tools.docs_check import outcomes as o
-from tools.docs_check.commands import COLUMNS, README_COLUMNS, ROOT, command_lines, look_up, run_command, without_remark
+from tools.docs_check.commands import (
+    COLUMNS,
+    README_COLUMNS,
+    ROOT,
+    Ran,
+    command_lines,
+    look_up,
+    run_command,
+    without_remark,
+)
 from tools.docs_check.consoles import compare_console, elided_lines
 from tools.docs_check.measured import load, numbers, unknown_numbers
 from tools.docs_check.outcomes import Outcome
 from tools.docs_check.pages import Item, read_page
 from tools.docs_check.pictures import compare, compare_stored
+from tools.docs_check.rows import Due, Row, Shown, read_rows, wrong_figures
 
 
-def check_page(path: Path) -> list[Outcome]:
-    """What became of everything on a page."""
+def check_page(path: Path, due: Due | None = None) -> list[Outcome]:
+    """What became of everything on a page; `due` says which rows are run, all short ones unless given."""
     name = str(path.relative_to(ROOT)) if path.is_relative_to(ROOT) else path.name
     try:
         items = read_page(path)
     except ValueError as error:
         return [Outcome(o.FAILED, "page", name, str(error))]
     with TemporaryDirectory(prefix="docs-check-") as folder:
-        run = _PageRun(path, name, Path(folder))
+        run = _PageRun(path, name, Path(folder), due or Due())
         try:
             return [outcome for item in items for outcome in run.check(item)]
         finally:
             run.close()
 
 
-def timed_check(path: Path) -> tuple[float, list[Outcome]]:
+def timed_check(path: Path, due: Due) -> tuple[float, list[Outcome]]:
     """How many seconds that took, and what it found."""
     begin = time.monotonic()
-    outcomes = check_page(path)
+    outcomes = check_page(path, due)
     return time.monotonic() - begin, outcomes
 
 
 class _PageRun:
-    def __init__(self, path: Path, name: str, folder: Path) -> None:
-        self._path, self._name, self._folder = path, name, folder
+    def __init__(self, path: Path, name: str, folder: Path, due: Due) -> None:
+        self._path, self._name, self._folder, self._due = path, name, folder, due
         self._columns = README_COLUMNS if path.name == "README.md" else COLUMNS
         module = types.ModuleType("__docs__")  # whose name dataclasses look up
         sys.modules[module.__name__] = module
         self._names: dict[str, Any] = module.__dict__
         self._printed = ""
         self._servers: list[subprocess.Popen[str]] = []
+        self._of_rows: dict[str, Ran] = {}
 
     def check(self, item: Item) -> Iterator[Outcome]:
         """What became of an item."""
@@ -70,7 +81,8 @@ class _PageRun:
             return
         kinds = {"sh": self._shell, "console": self._console, "python": self._python, "yaml": self._yaml,
                  "json": self._json, "text": self._text}  # fmt: skip
-        act = {"setup": self._setup, "background": self._background, "region": self._region, "picture": self._picture}
+        act = {"setup": self._setup, "background": self._background, "region": self._region, "picture": self._picture,
+               "rows": self._rows}  # fmt: skip
         try:
             if item.kind == "block" and item.language not in kinds:
                 yield Outcome(o.FAILED, "block", where, f"a block of language {item.language!r} needs a marker")
@@ -239,6 +251,29 @@ class _PageRun:
         if unknown:
             yield Outcome(o.FAILED, "numbers", where, f"not printed by {source}: {', '.join(unknown)}")
         yield from (Outcome(status, "number", where) for _ in range(len(numbers(item.text)) - len(unknown)))
+
+    def _rows(self, item: Item, where: str) -> Iterator[Outcome]:
+        for row in read_rows(item.text, item.line):
+            yield from self._row(row, f"{self._name}:{row.line}")
+
+    def _row(self, row: Row, where: str) -> Iterator[Outcome]:
+        problems = list(row.problems())
+        yield from (Outcome(o.FAILED, "row", where, problem) for problem in problems)
+        if problems or not row.commands:
+            return
+        if not self._due.has(row):
+            yield Outcome(o.LEFT, "row", where)
+            return
+        wrong = [found for shown in row.commands if (found := wrong_figures(shown, self._ran_once(shown)))]
+        yield from (Outcome(o.FAILED, "row", where, found) for found in wrong)
+        if not wrong:
+            yield Outcome(o.COMPARED, "row", where)
+
+    def _ran_once(self, shown: Shown) -> Ran:
+        """Run a command of a row, or return what it printed for a row before."""
+        if shown.command not in self._of_rows:
+            self._of_rows[shown.command] = run_command(shown.command, self._folder, shown.limit_s)
+        return self._of_rows[shown.command]
 
 
 def _stored_output(names: list[str]) -> str:

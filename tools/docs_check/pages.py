@@ -37,8 +37,8 @@ class Marker:
 class Item:
     """Something on a page that is made or run.
 
-    `kind` is block, picture, setup, background or region; `text` its code, the picture's path, the commands, or the
-    region's words; `language` that of a block.
+    `kind` is block, picture, setup, background, region or rows; `text` its code, the picture's path, the commands, or
+    the words of the region or the rows; `language` that of a block.
     """
 
     kind: str
@@ -76,10 +76,11 @@ def _items(lines: list[str]) -> Iterator[Item]:
             marker = Marker.of(match[1] if match else "")
             if marker.word in ("setup", "background"):
                 yield Item(marker.word, begin + 1, marker.rest)
-            elif marker.word == "numbers":
+            elif marker.word in ("numbers", "rows"):
                 region = (at + 1, marker)
             elif marker.word == "end" and region:
-                yield Item("region", region[0] + 1, "\n".join(lines[region[0] : begin]), markers=(region[1],))
+                kind = "rows" if region[1].word == "rows" else "region"
+                yield Item(kind, region[0] + 1, "\n".join(lines[region[0] : begin]), markers=(region[1],))
                 region = None
             else:
                 pending.append(marker)

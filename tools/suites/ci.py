@@ -14,7 +14,7 @@ from zlib import crc32
 
 from tests.suites import SHARES
 
-from tools.docs_check.__main__ import pages
+from tools.docs_check.__main__ import has_rows, pages
 from tools.suites.alone import EXTRAS
 from tools.suites.campaigns import CAMPAIGNS
 from tools.suites.change import ROOT, TURN, base_of_submission, changed_files, git, raises, turn
@@ -78,12 +78,20 @@ def _long_tests(number: int, changed: list[str] | None) -> Step:
 
 
 def _documents(number: int, changed: list[str] | None) -> Step:
-    """Choose pages: those that have changed, with what they show, and a tenth by a checksum of their names."""
-    every = [page.relative_to(ROOT).as_posix() for page in pages()]
-    if changed is None or _touches(changed, ("tools/docs_check/", "docs/measured/", "docs/images/")):
-        return Step("documents", "all pages", ["make", "docs-check"])
-    chosen = [page for page in every if page in changed or crc32(page.encode()) % SHARES == number % SHARES]
-    return Step("documents", "changed pages, and a tenth", ["make", "docs-check", f"DOCS={' '.join(chosen)}"])
+    """Choose pages: those that have changed, a tenth by a checksum of their names, and those of which rows are run."""
+    if changed is None:
+        return Step("documents", "all pages", ["make", "docs-check", "DOCS_FLAGS=--every"])
+    flags = f"DOCS_FLAGS=--turn {number} --since {base_of_submission() or 'HEAD'}"
+    if _touches(changed, ("tools/docs_check/", "docs/measured/", "docs/images/")):
+        return Step("documents", "all pages", ["make", "docs-check", flags])
+    every = {page.relative_to(ROOT).as_posix(): page for page in pages()}
+    chosen = [
+        name
+        for name, page in every.items()
+        if name in changed or crc32(name.encode()) % SHARES == number % SHARES or has_rows(page)
+    ]
+    why = "changed pages, a tenth, and a tenth of the rows"
+    return Step("documents", why, ["make", "docs-check", flags, f"DOCS={' '.join(chosen)}"])
 
 
 def _sanitizers(number: int, changed: list[str] | None) -> Step:

@@ -84,6 +84,32 @@ class BundleValuer(TeamValuer):
             self._exchange(members)
         return Resolution()
 
+    def bids_fault(self, said: RoundBids) -> str:
+        names, i = [task for task, _ in said.bids], self._robots[said.robot]
+        if wrong := self._no_such_task(names):
+            return wrong
+        tasks = [self._tasks[task] for task in names]
+        if self._phase is _Phase.TELLING:
+            mine = self._beliefs.z[i] == i
+            return "" if all(mine[j] and j not in self._done for j in tasks) else "the order of tasks that others won"
+        offered, had = set(self._offered.tolist()), set(self._bundles[i])
+        if self._phase is _Phase.ASKING:
+            return "" if tasks in ([], self._offered[:1].tolist()) else "a bid for tasks that are not asked for"
+        fits = all(j in offered and j not in had and self.problem.may(i, j) for j in tasks)
+        return "" if fits else "a bid for tasks that are not offered to it"
+
+    def sale_fault(self, sold: Sold) -> str:
+        tasks = [task for _, task in sold.assignments]
+        if wrong := self._no_such_task(tasks):
+            return wrong
+        sellable = all(
+            self._tasks[task] not in self._closed
+            and self.problem.may(self._robots[robot], self._tasks[task])
+            and not any(self._tasks[task] in route for route in self._routes)
+            for robot, task in sold.assignments
+        )
+        return "" if sellable else f"{sold.what} for {sold.winner}, which is not for sale"
+
     def award(self, sold: Sold) -> None:
         self._routes[self._robots[sold.robot]].append(self._tasks[sold.task])
 

@@ -8,7 +8,7 @@ from muster.allocation.capabilities import FOR_GOOD, those_that_can
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Task
 from muster.model.problem import Problem
-from muster_team.knowledge.epoch_base import joint_among
+from muster_team.knowledge.rules import joint_among
 
 AGREED = FOR_GOOD - {"load", "battery", "rests", "duty", "either-or"}
 """What the auction agrees on: without a centre nobody shares out the slots of stations, or knows what lies where.
@@ -53,21 +53,23 @@ def refuse_mission(mission: Mission, can: frozenset[str]) -> None:
     refuse_once_together(problem.tasks, (problem.holds("team"), problem.holds("relation")))
 
 
-def refuse_once_together(tasks: Sequence[Task], tied: tuple[bool, bool]) -> None:
+def refuse_once_together(tasks: Sequence[Task], tied: tuple[bool, bool], given: Sequence[Task] = ()) -> None:
     """Refuse tasks that several robots begin and that must not be begun twice: a team begins again after a fault.
 
     Parameters
     ----------
     tied
         whether teams, and whether relations, hold.
+    given
+        tasks that there were before; where they are wrong themselves, only what others add to that is refused.
 
     Raises
     ------
     ParameterError
         with the tasks.
     """
-    joint = joint_among(tasks, tied)
-    once = [task.id for task in tasks if task.id in joint and task.across_partition == "at-most-once"]
+    joint, before = joint_among(tasks, tied), joint_among(given, tied)
+    once = [t.id for t in tasks if t.id in joint - before and t.across_partition == "at-most-once"]
     if once:
         raise ParameterError(
             f"across_partition: at-most-once of {', '.join(once)}; expected at-least-once for tasks that several "

@@ -13,10 +13,21 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 from muster_team.auctions.valuation import Opening, Valuer
-from muster_team.knowledge.epoch_base import Base, Rules, agreed
+from muster_team.knowledge.epoch_base import Base, agreed
 from muster_team.knowledge.facts import deeds
 from muster_team.knowledge.joint_statements import Members
-from muster_team.knowledge.messages import Claim, Declaration, RoundBids, Sold, Stage
+from muster_team.knowledge.messages import Claim, Declaration, Evidence, RoundBids, Sold, Stage
+from muster_team.knowledge.rules import Rules
+from muster_team.knowledge.signatures import NO_KEYS, Signatures
+
+EARLY = 4
+"""How many bids a member, before it has found the base, keeps of each member."""
+
+AHEAD = 1
+"""How many rounds others may be ahead: without this member's bids they do not come further."""
+
+
+Statement = Declaration | RoundBids
 
 
 @dataclass
@@ -33,6 +44,8 @@ class Epoch:
         tasks for which this member does not bid.
     stage
         its progress.
+    signatures
+        the proofs of who has stated what.
     """
 
     own: Declaration
@@ -42,10 +55,15 @@ class Epoch:
     base: Base | None = None
     sales: list[Sold] = field(default_factory=list)
     stage: Stage = field(init=False)
+    signatures: Signatures = NO_KEYS
     _declared: dict[str, Declaration] = field(default_factory=dict)
     _waits_for: set[str] = field(default_factory=set)  # members that have not declared the same members
     _bids: defaultdict[int, dict[str, RoundBids]] = field(default_factory=lambda: defaultdict(dict))
     _early: list[tuple[bytes, RoundBids]] = field(default_factory=list)  # of those that found the base before this one
+
+    _evidence: list[Evidence] = field(default_factory=list)
+    _refused: list[tuple[str, str]] = field(default_factory=list)  # the robot, "" for any, and the reason
+    _void: set[tuple[int, str]] = field(default_factory=set)  # rounds and robots whose bids were refused
 
     def __post_init__(self) -> None:
         self.stage = Stage(self.own.epoch)
@@ -63,6 +81,7 @@ class Epoch:
     def hear_declaration(self, declaration: Declaration) -> bool:
         """Note a member's declaration; return whether the epoch can go on now."""
         robot = declaration.robot
+        self._compare(b"", self._declared.get(robot), declaration)
         if self.base is not None or declaration.epoch != self.own.epoch or robot == self.own.robot:
             return False
         if self._declared.get(robot) == declaration:
@@ -77,12 +96,16 @@ class Epoch:
     def hear_bids(self, digest: bytes, bids: RoundBids) -> bool:
         """Note a member's bids on a base; return whether the epoch can go on now."""
         if self.base is None:
-            self._early.append((digest, bids))
+            if len(self._early) < EARLY * len(self.own.members):
+                self._early.append((digest, bids))
             return False
         if digest != self.base.digest or bids.robot not in self.base.routes:
             return False
+        if not self.stage.round <= bids.round <= self.stage.round + AHEAD or (bids.round, bids.robot) in self._void:
+            return False
         heard = self._bids[bids.round]
         if bids.robot in heard:
+            self._compare(digest, heard[bids.robot], bids)
             return False
         heard[bids.robot] = bids
         return bids.round == self.stage.round and len(heard) == len(self.own.members)
@@ -95,6 +118,9 @@ class Epoch:
             return False  # it has to go through the rounds itself, or take over all that came of them
         before, known = self.stage, len(self.sales)
         for sold in sales[max(0, known - sales_from) :] if sales_from <= known else ():
+            if self.ended or (reason := self.valuer.sale_fault(sold)):
+                self._refused += [] if self.ended else [("", reason)]
+                break
             self._sell(sold)
             self._reach(self.round + self.valuer.sales_suffice)
         complete = self.round == stage.round if self.valuer.sales_suffice else sales_from <= known
@@ -110,8 +136,12 @@ class Epoch:
         while not self.ended:
             heard = self._bids[self.round]
             if self.own.robot not in heard:
-                heard[self.own.robot] = RoundBids(self.own.robot, self.round, self.valuer.bids(self.refused))
+                own = RoundBids(self.own.robot, self.round, self.valuer.bids(self.refused))
+                assert self.base is not None
+                heard[self.own.robot] = self.signatures.sign(own, self.base.digest)
                 published.append(heard[self.own.robot])
+            if len(heard) == len(self.own.members):
+                self._void_bids(heard)
             if len(heard) < len(self.own.members):
                 break
             resolution = self.valuer.resolve([heard[robot] for robot in self.own.members])
@@ -119,6 +149,32 @@ class Epoch:
                 self._sell(sold)
             self._reach(self.round + (bool(resolution.sales) or not resolution.over), ended=resolution.over)
         return published
+
+    def take_refused(self) -> list[tuple[str, str]]:
+        """What was refused since the last call: the robot that said it, or "" for the sender, and the reason."""
+        refused, self._refused = self._refused, []
+        return refused
+
+    def take_evidence(self) -> list[Evidence]:
+        """Statements that contradict each other, since the last call."""
+        evidence, self._evidence = self._evidence, []
+        return evidence
+
+    def _compare(self, context: bytes, first: Statement | None, second: Statement) -> None:
+        """Note two different statements of one robot; whether they convict it is for `signatures` to say."""
+        if first is not None and first != second:
+            self._evidence.append(Evidence(context, first, second))
+
+    def _void_bids(self, heard: dict[str, RoundBids]) -> None:
+        """Take out bids that no member can mean in this round: their robots keep the others waiting, and are excluded.
+
+        All members do so alike, as they know what is for sale.
+        """
+        for robot in [robot for robot in heard if robot != self.own.robot]:
+            if reason := self.valuer.bids_fault(heard[robot]):
+                del heard[robot]
+                self._void.add((self.round, robot))
+                self._refused.append((robot, reason))
 
     @property
     def lacks(self) -> tuple[str, ...]:

@@ -21,7 +21,7 @@ class TaskSales:
     """What was sold since these routes; all tasks that are neither in them nor closed are for sale."""
 
     def __init__(self, problem: Problem, terms: Terms, routes: Routes, closed: Collection[int]) -> None:
-        self._problem, self._terms = problem, terms
+        self._problem, self._terms, self._closed = problem, terms, closed
         self._auctioneer = Auctioneer(problem, terms)
         self._auctioneer.restore(routes, {}, closed)
 
@@ -45,6 +45,14 @@ class TaskSales:
         rule.note(range(len(self._problem.robots)))
         sale = rule.winner()
         return None if sale is None else self._sold(sale)
+
+    def can_win(self, pairs: Sequence[tuple[int, int]]) -> bool:
+        """Whether a robot can win a task in this round; more than one pair cannot be won at once."""
+        if len(pairs) != 1:
+            return False
+        ((robot, task),) = pairs
+        is_for_sale = task not in self._closed and not any(task in route for route in self._auctioneer.routes)
+        return is_for_sale and bool(np.isfinite(self._auctioneer.bids_for(task)[robot]))
 
     def award(self, sold: Sold) -> None:
         """Put a task into the route of its winner."""

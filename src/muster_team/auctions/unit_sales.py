@@ -61,6 +61,19 @@ class UnitSales:
         ranked = (self._sold(unit, best) for unit, best in in_turn(offers, self._terms))
         return next((sold for sold in ranked if sold is not None), None)
 
+    def can_win(self, pairs: Sequence[tuple[int, int]]) -> bool:
+        """Whether robots can win the tasks of a unit in this round, or one of them a place in it."""
+        units = {self._problem.model.unit[task] for _, task in pairs}
+        if len(units) != 1 or not all(self._problem.may(robot, task) for robot, task in pairs):
+            return False
+        (unit,) = units
+        if unit not in self._for_sale():
+            return False
+        if len(pairs) == 1 and not self._auction.is_alone(unit):
+            return True
+        bid = self._auction.best_bid(unit, sorted({robot for robot, _ in pairs}))
+        return bid is not None and self._auction.holds(bid)
+
     def award(self, sold: Sold) -> None:
         """Put a unit into the routes of its winners."""
         bid = self._bid_of(sold)

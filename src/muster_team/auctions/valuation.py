@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar, Protocol
 
 from muster.allocation.allocator import Routes
@@ -17,12 +17,16 @@ from muster.allocation.auctions.auction_terms import Terms
 from muster.allocation.auctions.coalitions import bid_of
 from muster.allocation.capabilities import NONE
 from muster.allocation.fixed import admissible_part, with_past
+from muster.mission.errors import MusterError, ParameterError
+from muster.mission.value_types import shown
 from muster.model.problem import Problem
-from muster_team.auctions.capabilities import AGREED, refuse_what_is_not_agreed
+from muster_team.auctions.capabilities import AGREED, refuse_once_together, refuse_what_is_not_agreed
 from muster_team.auctions.task_sales import TaskSales
 from muster_team.auctions.unit_sales import UnitSales
 from muster_team.knowledge.messages import Bid, RoundBids, Sold
-from muster_team.knowledge.new_tasks import with_tasks
+from muster_team.knowledge.new_tasks import task_of, with_tasks
+
+_MISFITS_KEPT = 1000  # more orders under way at once than operators give
 
 
 @dataclass(frozen=True)
@@ -68,6 +72,18 @@ class Valuer(Protocol):
 
         ParameterError if robots cannot agree on them (`capabilities`).
         """
+        ...
+
+    def misfit(self, tasks: tuple[bytes, ...]) -> str:
+        """The reason for which `check` raises; empty if it does not."""
+        ...
+
+    def bids_fault(self, said: RoundBids) -> str:
+        """What is wrong in another robot's bids in this round; empty if it may bid so."""
+        ...
+
+    def sale_fault(self, sold: Sold) -> str:
+        """Why this cannot have been sold in this round; empty if it can."""
         ...
 
     def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
@@ -119,9 +135,41 @@ class TeamValuer(ABC):
         self._robots, self._tasks = problem.robot_index, problem.task_index
         self._me = self._robots[robot]
         self._added: tuple[bytes, ...] = ()
+        self._misfits: dict[tuple[bytes, ...], str] = {}
 
     def check(self, tasks: Sequence[bytes]) -> None:
-        refuse_what_is_not_agreed(with_tasks(self._given, tasks), self.can)
+        whole = with_tasks(self._given, tasks)
+        for task in map(task_of, tasks):
+            before = self._given.task_index.get(task.id)
+            if before is not None and replace(self._given.tasks[before], position=task.position) != task:
+                raise ParameterError(f"moved task: {shown(task.id)}; expected another position, and else what it is")
+        refuse_what_is_not_agreed(whole, self.can)
+        refuse_once_together(whole.tasks, (whole.holds("team"), whole.holds("relation")), self._given.tasks)
+
+    def misfit(self, tasks: tuple[bytes, ...]) -> str:
+        if tasks not in self._misfits:
+            if len(self._misfits) >= _MISFITS_KEPT:
+                self._misfits.clear()
+            self._misfits[tasks] = self._reason_against(tasks)
+        return self._misfits[tasks]
+
+    def _reason_against(self, tasks: tuple[bytes, ...]) -> str:
+        try:
+            self.check(tasks)
+        except MusterError as error:
+            return str(error)
+        return ""
+
+    @abstractmethod
+    def bids_fault(self, said: RoundBids) -> str: ...
+
+    @abstractmethod
+    def sale_fault(self, sold: Sold) -> str: ...
+
+    def _no_such_task(self, tasks: Sequence[str]) -> str:
+        """A fault of statements about these tasks: one is unknown, or stated twice; empty: none is."""
+        wrong = next((task for k, task in enumerate(tasks) if task not in self._tasks or task in tasks[:k]), None)
+        return "" if wrong is None else f"the task {shown(wrong)}, which there is not, or twice"
 
     def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
         if opening.added != self._added:
@@ -187,6 +235,21 @@ class AuctionValuer(TeamValuer):
 
     def route(self, robot: str) -> list[str]:
         return [self.problem.tasks[j].id for j in self.sales.routes[self._robots[robot]]]
+
+    def bids_fault(self, said: RoundBids) -> str:
+        wrong = self._no_such_task([task for task, _ in said.bids])
+        return wrong or next(filter(None, (self._not_won(((said.robot, task),)) for task, _ in said.bids)), "")
+
+    def sale_fault(self, sold: Sold) -> str:
+        wrong = self._no_such_task(list(dict.fromkeys(task for _, task in sold.assignments)))
+        return wrong or self._not_won(sold.assignments)
+
+    def _not_won(self, assignments: Sequence[tuple[str, str]]) -> str:
+        """Why robots cannot win these tasks now, each its own; empty: they can."""
+        pairs = [(self._robots[robot], self._tasks[task]) for robot, task in assignments]
+        if self.sales.can_win(pairs):
+            return ""
+        return ", ".join(f"{shown(task)} for {shown(robot)}" for robot, task in assignments) + ", which is not for sale"
 
     def spans(self) -> Mapping[str, tuple[float, float]]:
         return self.sales.spans() if isinstance(self.sales, UnitSales) else {}

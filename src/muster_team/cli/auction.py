@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from muster_team.negotiators.methods import Method
 
 _FILE = click.Path(path_type=Path)
-_OF_ONE_ROBOT = ("listen", "connect", "multicast", "memory", "key_file")
+_OF_ONE_ROBOT = ("listen", "connect", "multicast", "memory", "key_file", "robot_key", "roster")
 _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", "cut")
 
 
@@ -58,6 +58,15 @@ _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", 
     callback=lambda *a: _new_key(*a),
     metavar="FILE",
     help="Make a key for --key-file, and do nothing else.",
+)
+@click.option(
+    "--new-robot-key",
+    type=_FILE,
+    is_eager=True,
+    expose_value=False,
+    callback=lambda *a: _new_robot_key(*a),
+    metavar="FILE",
+    help="Make a key for --robot-key, print its public key for --roster, and do nothing else.",
 )
 @simulation_options
 @require_complete_option
@@ -157,4 +166,18 @@ def _new_key(ctx: click.Context, _: click.Parameter, file: Path | None) -> None:
 
     write_key(file, new_key())
     click.echo(f"{file}: a new key; give every robot a copy, and nobody else")
+    ctx.exit()
+
+
+def _new_robot_key(ctx: click.Context, _: click.Parameter, file: Path | None) -> None:
+    if file is None or ctx.resilient_parsing:
+        return
+    from muster_team.network.keys import new_key, write_key
+    from muster_team.network.robot_keys import public_key
+
+    key = new_key()
+    public = public_key(key)
+    write_key(file, key)
+    click.echo(f"{file}: a new key, which only this robot may have", err=True)
+    click.echo(public.hex())
     ctx.exit()

@@ -51,6 +51,10 @@ robot_options = _group(
     click.option("--robot", metavar="NAME", help="Be this robot alone; the others run elsewhere."),
     click.option("--key-file", type=_FILE, metavar="FILE", help="The team's key; needed with --robot."),
     click.option(
+        "--robot-key", type=_FILE, metavar="FILE", help="This robot's own key, beside the team's; with --roster."
+    ),
+    click.option("--roster", type=_FILE, metavar="FILE", help="The public keys of all robots (.json)."),
+    click.option(
         "--listen", metavar="ADDRESS", help="HOST:PORT to be reached at (Zenoh: an endpoint).  [default: 0.0.0.0:7783]"
     ),
     click.option(

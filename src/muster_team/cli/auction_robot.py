@@ -13,10 +13,12 @@ from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.texts.near_matches import did_you_mean
 from muster.model.problem import Problem
 from muster_team.cli.auction_result import Agreement, by_kind
+from muster_team.knowledge.signatures import NO_KEYS, Signatures
 from muster_team.negotiators.methods import Method
 from muster_team.negotiators.negotiator import Negotiator
 from muster_team.network.keys import read_key
 from muster_team.network.mission_digest import mission_digest
+from muster_team.network.robot_keys import RobotKeys, public_key, read_roster
 from muster_team.network.transport import Transport
 from muster_team.processes.memory_file import kept_of
 from muster_team.processes.node import NodeStatus
@@ -60,7 +62,9 @@ def agree_with_others(
     kept = replace(kept, incarnation=new_incarnation(kept.incarnation))
     forgot = file is None  # for all it knows, it may have taken part before
     carrier = _transport(problem, transport, options)
-    node = node_of(problem, terms, method, kept, file=file, key=key, transport=carrier, forgot=forgot)
+    signatures = _signatures(options, problem, digest)
+    how = {"forgot": forgot, "signatures": signatures}
+    node = node_of(problem, terms, method, kept, file=file, key=key, transport=carrier, **how)
 
     def say(line: str) -> None:
         if not quiet:
@@ -76,13 +80,26 @@ def agree_with_others(
     return Agreement({robot: view}, took_s)
 
 
+def _signatures(options: dict[str, Any], problem: Problem, context: bytes) -> Signatures:
+    """The robot's own key and the public keys of all, if it has them."""
+    own, roster = options["robot_key"], options["roster"]
+    if (own is None) != (roster is None):
+        raise ParameterError("--robot-key and --roster: expected both, or neither")
+    if own is None:
+        return NO_KEYS
+    key, public = read_key(own), read_roster(roster, list(problem.robot_index))
+    if public[options["robot"]] != public_key(key):
+        raise ParameterError(f"--robot-key: {own}; expected the key whose public one {roster} gives {options['robot']}")
+    return RobotKeys(key, public, context)
+
+
 class _Watch:
     """Prints which robots take part."""
 
     def __init__(self, negotiator: Negotiator, say: Callable[[str], None]) -> None:
         self._negotiator, self._say = negotiator, say
         self._there: set[str] = set()
-        self._settled = False
+        self._settled, self._told = False, 0
         self._incarnation = negotiator.incarnation
 
     def __call__(self, status: NodeStatus) -> None:
@@ -97,6 +114,12 @@ class _Watch:
             elif robot in self._there and robot not in heard:
                 self._say(f"{robot} is silent; going on without it")
         self._there = heard
+        for notice in self._negotiator.notices[self._told :]:
+            if notice.kind == "refused":
+                self._say(f"refused from {notice.robots[0]}: {notice.reason}")
+            elif notice.kind == "revoked":
+                self._say(f"{notice.robots[0]} has stated two different things; going on without it for good")
+        self._told = len(self._negotiator.notices)
         if status.settled != self._settled and status.settled:
             who = (
                 f"all {len(status.members)} agree" if len(status.members) > 1 else "alone, with nothing left to bid for"

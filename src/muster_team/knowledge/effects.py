@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from muster_team.knowledge.messages import Claim, Fact, Message
 
@@ -26,15 +27,23 @@ class Notice:
         "silent": robots no longer take part. "back": robots take part again. "restarted": a robot has restarted.
         "unresponsive": a robot is heard but delays the others, and is excluded. "rival": another process uses this
         robot's id. "renumbered": this robot has taken a higher incarnation, as the others knew a later one than its
-        clock gave it. "dropped": the robot has lost a task that it owned, as another robot owns it or it cannot be done
-        any more. "twice": these robots have all begun or done the task.
+        clock gave it. "refused": a robot has sent what is not admitted. "revoked": a robot has stated two different
+        things, and is excluded for good. "dropped": the robot has lost a task that it owned, as another robot owns it
+        or it cannot be done any more. "twice": these robots have all begun or done the task.
     robots, task
         the robots and the task concerned; "" without a task.
+    reason
+        why something was refused; "" otherwise.
     """
 
     kind: str
     robots: tuple[str, ...]
     task: str = ""
+    reason: str = ""
+
+
+REASONS = 100
+"""The number of reasons for refusals that a robot tells; all are counted."""
 
 
 class Notices(list[Notice]):
@@ -53,6 +62,12 @@ class Notices(list[Notice]):
         for happening in (Notice("twice", robots, task) for task, robots in twice.items()):
             if happening not in self:
                 self.append(happening)
+
+    def tell_refused(self, sender: str, reason: str) -> None:
+        """Add a notice of what was refused from a sender, once for each reason, and at most REASONS in all."""
+        notice = Notice("refused", (sender,), reason=reason)
+        if notice not in self and sum(other.kind == "refused" for other in self) < REASONS:
+            self.append(notice)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +98,12 @@ class Memory:
 
 @dataclass
 class Counts:
-    """Numbers of messages sent: with news of the sender, repairs of what others lacked, idle heartbeats."""
+    """Numbers of messages sent: with news of the sender, repairs of what others lacked, idle heartbeats.
+
+    `refused`: for each sender how many of its messages, or parts of them, were not admitted.
+    """
 
     news: int = 0
     repairs: int = 0
     heartbeats: int = 0
+    refused: Counter[str] = field(default_factory=Counter)

@@ -6,80 +6,20 @@ claims.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from graphlib import CycleError, TopologicalSorter
 from hashlib import blake2b
 
-from muster.mission.model import Task
 from muster_team.knowledge.facts import deeds, holders, in_order
 from muster_team.knowledge.messages import Claim, Declaration, Fact
-from muster_team.knowledge.new_tasks import task_of
+from muster_team.knowledge.orders import orders_among
+from muster_team.knowledge.rules import Rules
 
 Routes = dict[str, list[Claim]]
 
-
-@dataclass(frozen=True)
-class Rules:
-    """The rules of the mission that a base has to respect.
-
-    Parameters
-    ----------
-    robots, tasks
-        all ids, in tie order: robots and tasks that come first win ties.
-    prerequisites
-        of each task; empty where they are ignored.
-    once
-        tasks that must not be begun twice, whatever happens to the network.
-    linked
-        whether prerequisites of added tasks count.
-    teams
-        tasks that several robots may own, as a team.
-    joint
-        tasks that several robots begin at the same moment: those of teams, and those tied by `starts_with`.
-    tied
-        whether teams, and whether `starts_with`, of added tasks count.
-    """
-
-    robots: Mapping[str, int]
-    tasks: Mapping[str, int]
-    prerequisites: Mapping[str, Sequence[str]]
-    once: frozenset[str] = frozenset()
-    linked: bool = True
-    teams: frozenset[str] = frozenset()
-    joint: frozenset[str] = frozenset()
-    tied: tuple[bool, bool] = (True, True)
-
-    @property
-    def majority(self) -> int:
-        """The size of a majority: any two groups of this many robots of the mission have one in common."""
-        return len(self.robots) // 2 + 1
-
-    def with_added(self, added: Sequence[Fact]) -> Rules:
-        """The rules with these added tasks; a task that has moved belongs to the mission anyway."""
-        tasks = [task_of(fact.content) for fact in added if fact.task not in self.tasks]
-        if not tasks:
-            return self
-        return replace(
-            self,
-            tasks={**self.tasks, **{task.id: k for k, task in enumerate(tasks, len(self.tasks))}},
-            prerequisites={**self.prerequisites, **{t.id: t.prerequisites if self.linked else () for t in tasks}},
-            once=self.once | {task.id for task in tasks if task.across_partition == "at-most-once"},
-            teams=self.teams | teams_among(tasks, self.tied),
-            joint=self.joint | joint_among(tasks, self.tied),
-        )
-
-
-def teams_among(tasks: Iterable[Task], tied: tuple[bool, bool]) -> frozenset[str]:
-    """The tasks that several robots may own; `tied` is as in `Rules`."""
-    return frozenset(task.id for task in tasks if tied[0] and task.is_for_team)
-
-
-def joint_among(tasks: Iterable[Task], tied: tuple[bool, bool]) -> frozenset[str]:
-    """The tasks that several robots begin at the same moment; `tied` is as in `Rules`."""
-    tasks = list(tasks)
-    linked = {name for task in tasks if tied[1] and task.starts_with for name in (task.id, *task.starts_with)}
-    return teams_among(tasks, tied) | linked
+MOST_ROUNDS = 2**48
+"""Rounds are counted up to this number, so that there is always room for those of the next epoch."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +85,7 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
     """
     declarations = sorted(declarations, key=lambda declaration: rules.robots[declaration.robot])
     facts = frozenset(fact for declaration in declarations for fact in declaration.facts)
-    added = tasks_added(facts, rules)
+    added = orders_among(facts, rules).taken
     rules = rules.with_added(added)
     # Of a task it may be heard that it was done before it is heard that there is such a task.
     known = frozenset(fact for fact in facts if fact.task in rules.tasks)
@@ -157,8 +97,9 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
     for declaration in declarations:
         robot = declaration.robot
         stale = {fact.task for fact in added if fact.kind == "moved" and fact not in declaration.facts}
-        kept = [c for c in declaration.route if c.task not in gone | stale and reserved.get(c.task, robot) == robot]
-        routes[robot] = [*(c for c in declaration.route if c.begun), *(c for c in kept if not c.begun)]
+        there = [c for c in declaration.route if c.task in rules.tasks]  # an order may be refused that counted before
+        kept = [c for c in there if c.task not in gone | stale and reserved.get(c.task, robot) == robot]
+        routes[robot] = [*(c for c in there if c.begun), *(c for c in kept if not c.begun)]
     twice = _one_owner_each(routes, rules)
     _drop_orphans(routes, done, rules)
     while (last := _last_of_a_cycle(routes, rules)) is not None:
@@ -176,30 +117,9 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
         held=_with_followers(rules.once - done, routes, rules) if few else frozenset(),
         dropped=tuple((d.robot, c.task) for d in declarations for c in d.route if c.task not in still[d.robot]),
         twice=twice,
-        rounds=max(declaration.rounds for declaration in declarations),
+        rounds=min(max(declaration.rounds for declaration in declarations), MOST_ROUNDS),
         digest=_digest(declarations),
     )
-
-
-def tasks_added(facts: Collection[Fact], rules: Rules) -> tuple[Fact, ...]:
-    """The facts that add tasks or move them: the first of several tasks with one id, and the last move of each task.
-
-    Facts may arrive in any order and in parts. An added task waits until all its prerequisites are known. A move of an
-    added task with other prerequisites belongs to another task with that id, and does not count.
-    """
-    first: dict[str, Fact] = {}
-    last: dict[str, Fact] = {}
-    for fact in in_order(facts):
-        if fact.kind == "added" and fact.task not in rules.tasks:
-            if all(task in rules.tasks or task in first for task in task_of(fact.content).prerequisites):
-                first.setdefault(fact.task, fact)
-        elif fact.kind == "moved" and (fact.task in rules.tasks or _is_same_task(first.get(fact.task), fact)):
-            last[fact.task] = fact
-    return (*first.values(), *last.values())
-
-
-def _is_same_task(added: Fact | None, moved: Fact) -> bool:
-    return added is not None and task_of(added.content).prerequisites == task_of(moved.content).prerequisites
 
 
 def _reserved(declarations: Sequence[Declaration], facts: frozenset[Fact]) -> dict[str, str]:

@@ -11,9 +11,14 @@ from hashlib import blake2b
 
 from muster_team.knowledge.joint_statements import parts_of_deeds
 from muster_team.knowledge.messages import Fact
+from muster_team.knowledge.signatures import NO_KEYS, Signatures
 
 AT_ONCE = 40
 """The largest number of facts in a repair. A robot that lacks more asks again and receives others."""
+
+
+UNHEARD = 10_000
+"""More facts than a robot may know of without knowing those that came before them."""
 
 
 @dataclass
@@ -22,6 +27,7 @@ class Knowledge:
 
     facts: set[Fact] = field(default_factory=set)
     digest: int = 0
+    signatures: Signatures = NO_KEYS
     _deeds_at: int = 0  # the digest for which these deeds were found
     _deeds_found: dict[str, list[tuple[Fact, ...]]] = field(default_factory=dict)
 
@@ -42,8 +48,13 @@ class Knowledge:
         return self.add(task, robot, kind, content), True
 
     def add(self, task: str, robot: str, kind: str, content: bytes = b"") -> Fact:
-        """Add a fact stated by the robot itself, ordered after all facts that it knows."""
-        said = Fact(task, robot, kind, 1 + max((fact.order for fact in self.facts), default=0), content)
+        """Add a fact stated by the robot itself, ordered after all facts that it knows.
+
+        An order far above the number of facts is no robot's that counts them: it leaves that of the others alone.
+        """
+        most = len(self.facts) + UNHEARD
+        said = Fact(task, robot, kind, 1 + max((f.order for f in self.facts if f.order <= most), default=0), content)
+        said = self.signatures.sign(said)
         self.learn([said])
         return said
 

@@ -14,12 +14,14 @@ Times are those of the mission, which robots share where tasks have time windows
 from __future__ import annotations
 
 import json
+import math
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from muster.mission.value_types import shown
 from muster_team.knowledge.messages import Fact
 
 Members = tuple[tuple[str, str], ...]
@@ -87,6 +89,32 @@ def members_of(content: bytes) -> Members:
     return tuple((robot, task) for robot, task in members)
 
 
+def presence_fault(kind: str, content: bytes, robots: Collection[str]) -> Iterator[str]:
+    """What is wrong in the content of a `ready`, `left`, `joined` or `part`; nothing if these robots may state it."""
+    try:
+        stated = json.loads(content)
+        attempt, *rest = stated
+        times, members = (rest[:-1], [(robot, task) for robot, task in rest[-1]]) if kind != "left" else (rest, [])
+    except (ValueError, TypeError, RecursionError, IndexError):
+        yield f"{kind} with {_as_text(content)}"
+        return
+    wants = {"ready": 2, "left": 0}.get(kind, 1)
+    names = [name for pair in members for name in pair]
+    numbers = all(type(value) in (int, float) and math.isfinite(value) for value in times)
+    if type(attempt) is not int or attempt < 0 or len(times) != wants or not numbers or not all(map(_is_text, names)):
+        yield f"{kind} with {_as_text(content)}"
+    elif kind != "left" and not (members and all(robot in robots for robot, _ in members)):
+        yield f"{kind} of robots that there are not: {_as_text(content)}"
+
+
+def _as_text(content: bytes) -> str:
+    return shown(content.decode("utf-8", "replace"))
+
+
+def _is_text(value: object) -> bool:
+    return type(value) is str
+
+
 def parts_of_deeds(facts: Sequence[Fact]) -> dict[tuple[str, bytes], tuple[Fact, ...]]:
     """For each task done by several robots, and each time that it was, the parts: of all of its team, in order."""
     parts: dict[tuple[str, bytes], dict[str, Fact]] = {}
@@ -119,13 +147,16 @@ def attempt_of(facts: Iterable[Fact], unit: Collection[str]) -> int:
     """The attempt that counts for the tasks that begin together.
 
     An attempt is over when a robot has left it, and when one that has lost its memory has stated two things in it.
+    Each attempt follows from a statement in the one before it: a number above that of all statements is none.
     """
-    mine = [fact for fact in facts if fact.task in unit]
+    mine = [fact for fact in facts if fact.task in unit and fact.kind in ("ready", "left")]
+    most = len(mine)
     ready = {(fact.robot, fact.content) for fact in mine if fact.kind == "ready"}
     stated = Counter((robot, presence_of(content).attempt) for robot, content in ready)
     over = [json.loads(fact.content)[0] for fact in mine if fact.kind == "left"]
     over += [attempt for (_, attempt), times in stated.items() if times > 1]
-    return max([*(attempt for _, attempt in stated), *(attempt + 1 for attempt in over)], default=0)
+    said = [*(attempt for _, attempt in stated), *(attempt + 1 for attempt in over)]
+    return max((attempt for attempt in said if attempt <= most), default=0)
 
 
 def absent(facts: Collection[Fact], unit: Sequence[str], attempt: int, members: Members) -> Members:

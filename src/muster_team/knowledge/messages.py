@@ -22,6 +22,16 @@ class Claim:
     begun: bool = False
 
 
+FACTS = ("done", "begun", "waived", "added", "moved", "cancelled", "ready", "left", "joined", "part")
+"""The kinds of facts."""
+
+ORDERS = ("added", "moved")
+"""The kinds of facts that contain a task."""
+
+PRESENCE = ("ready", "left", "joined", "part")
+"""The kinds of facts that robots state of a task that they begin together."""
+
+
 @dataclass(frozen=True, slots=True)
 class Fact:
     """A statement that stays true.
@@ -40,6 +50,8 @@ class Fact:
     content
         of "added" and "moved": the task, as `new_tasks.content_of` writes it. Of "begun" and "waived": the incarnation
         that announced the task. Of "ready", "left", "joined" and "part": as `joint_statements` writes it.
+    proof
+        by the key of the robot: see `signatures`; empty where robots have no keys.
     """
 
     task: str
@@ -47,6 +59,7 @@ class Fact:
     kind: str
     order: int = 0
     content: bytes = b""
+    proof: bytes = b""
 
     @property
     def done(self) -> bool:
@@ -77,6 +90,8 @@ class Declaration:
     knows
         whether it remembers everything that it has ever stated; False after a start without memory until others have
         told it.
+    proof
+        by the key of the robot: see `signatures`; empty where robots have no keys.
     """
 
     robot: str
@@ -88,15 +103,20 @@ class Declaration:
     rounds: int = 0
     incarnations: tuple[int, ...] = ()
     knows: bool = True
+    proof: bytes = b""
 
 
 @dataclass(frozen=True, slots=True)
 class RoundBids:
-    """The bids of a robot in one round of an epoch: none, its lowest, or all, depending on the winner rule."""
+    """The bids of a robot in one round of an epoch: none, its lowest, or all, depending on the winner rule.
+
+    `proof`: by its key, of these bids on the base of the epoch.
+    """
 
     robot: str
     round: int
     bids: tuple[Bid, ...]
+    proof: bytes = b""
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,6 +173,31 @@ class Heartbeat:
 
 
 @dataclass(frozen=True, slots=True)
+class Birth:
+    """A start of a robot, with the proof by its key, so that nobody can pretend that it has started again."""
+
+    robot: str
+    incarnation: int
+    proof: bytes = b""
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """Two statements of one robot of which it may make one: it does not follow the protocol.
+
+    `context`: what both belong to, as they were signed.
+    """
+
+    context: bytes
+    first: Declaration | RoundBids
+    second: Declaration | RoundBids
+
+    @property
+    def robot(self) -> str:
+        return self.first.robot
+
+
+@dataclass(frozen=True, slots=True)
 class Message:
     """The sender's progress, its own statements, what it relays, and what it lacks.
 
@@ -176,6 +221,10 @@ class Message:
         facts that others may lack, and a digest of all facts that the sender knows; 0: none.
     unheard
         robots that the sender has not heard directly for a while, or never.
+    births
+        the starts of the robots in `heartbeats`; none where robots have no keys.
+    evidence
+        against robots that have stated two different things.
     """
 
     sender: str
@@ -192,6 +241,8 @@ class Message:
     facts: tuple[Fact, ...] = ()
     known: int = 0
     unheard: tuple[str, ...] = ()
+    births: tuple[Birth, ...] = ()
+    evidence: tuple[Evidence, ...] = ()
 
     @property
     def heartbeat(self) -> Heartbeat:

@@ -11,7 +11,7 @@ from muster.mission.errors import MissionError
 from muster.mission.model import Task
 from muster.mission.records import Record, findings
 from muster.mission.source import IN_PYTHON
-from muster.mission.value_types import Fault, shown
+from muster.mission.value_types import Fault
 from muster.mission.yaml_writer import plain
 from muster.model.problem import Problem
 
@@ -33,13 +33,19 @@ def task_of(content: bytes) -> Task:
     faults: list[Fault] = []
     try:
         data = json.loads(content)
-    except ValueError:
-        raise MissionError(findings([Fault((), shown(content), "a task as JSON")], IN_PYTHON)) from None
+    except (ValueError, RecursionError):
+        raise MissionError(findings([Fault((), f"{len(content)} bytes", "a task as JSON")], IN_PYTHON)) from None
     task = Record(Task, "a task").read(data, (), faults)
     if faults:
         raise MissionError(findings(faults, IN_PYTHON))
     assert isinstance(task, Task)
     return task
+
+
+def names_in(task: Task) -> tuple[str, ...]:
+    """The tasks that a task refers to."""
+    tied = (*task.prerequisites, *task.same_robot_as, *task.other_robot_than, *task.starts_with, *task.either_or)
+    return (*tied, *((task.delivers,) if task.delivers else ()))
 
 
 def with_tasks(problem: Problem, contents: Sequence[bytes]) -> Problem:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from math import inf
 
-from muster_team.knowledge.messages import Heartbeat, Message
+from muster_team.knowledge.messages import Birth, Heartbeat, Message
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +53,8 @@ class _Peer:
     born_s: float = inf  # when this incarnation was heard of first
     outdated_s: float = -inf  # when others were last known to accept an earlier incarnation
     unheard: tuple[str, ...] = ()
+    birth: Birth | None = None  # the proof of its last start, where robots have keys
+    revoked: bool = False
 
     def is_far(self, suspect_s: float) -> bool:
         """Whether the last news of this robot were relayed by others for a while."""
@@ -103,15 +105,37 @@ class Members:
     def accepts(self, message: Message) -> bool:
         """Whether a message is to be processed: its sender belongs to the team, and its incarnation is not outdated."""
         peer = self._peers.get(message.sender)
-        return peer is not None and peer.incarnation <= message.incarnation
+        return peer is not None and not peer.revoked and peer.incarnation <= message.incarnation
 
     def hear_from(self, message: Message, now: float) -> bool:
         """Note a message received directly; return whether its sender has restarted."""
         peer = self._peers[message.sender]
         peer.spoke_s = now
+        if message.incarnation == peer.incarnation:
+            peer.heard_s = max(peer.heard_s, now)  # whatever others have told of its number
         if message.heartbeats:
             peer.unheard = message.unheard
         return peer.hear(message.incarnation, message.number, now)
+
+    def hear_birth(self, birth: Birth) -> None:
+        """Note the proof that a robot has started, which was checked."""
+        peer = self._peers.get(birth.robot)
+        if peer is not None and (peer.birth is None or peer.birth.incarnation < birth.incarnation):
+            peer.birth = birth
+
+    def birth_of(self, heartbeat: Heartbeat) -> Birth | None:
+        """The proof of the start that a heartbeat names, if it is known."""
+        birth = self._peers[heartbeat.robot].birth
+        return birth if birth is not None and birth.incarnation == heartbeat.incarnation else None
+
+    def is_born(self, heartbeat: Heartbeat) -> bool:
+        """Whether a heartbeat names a start that is proven, or none later than the one that was heard."""
+        peer = self._peers.get(heartbeat.robot)
+        return peer is not None and (heartbeat.incarnation <= peer.incarnation or self.birth_of(heartbeat) is not None)
+
+    def revoke(self, robot: str) -> None:
+        """Exclude a robot for good."""
+        self._peers[robot].revoked = True
 
     def correction(self, robot: str, now: float) -> Heartbeat | None:
         """The known incarnation of a robot, for those that accept an earlier one; None while it is heard."""
@@ -146,13 +170,8 @@ class Members:
         """The robots that take part, this one included, in the order in which they are expected."""
         lease_s = self.timeouts.suspect_s
         near, far = now - lease_s, now - FAR * lease_s
-        return tuple(
-            [
-                r
-                for r, p in self._peers.items()
-                if p.excluded_until_s <= now and (p.heard_s > near or (p.heard_s > far and p.is_far(lease_s)))
-            ]
-        )
+        there = [(r, p) for r, p in self._peers.items() if not p.revoked and p.excluded_until_s <= now]
+        return tuple([r for r, p in there if p.heard_s > near or (p.heard_s > far and p.is_far(lease_s))])
 
     def is_far(self, robot: str) -> bool:
         """Whether a robot is heard through other robots only."""

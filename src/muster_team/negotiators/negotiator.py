@@ -12,10 +12,11 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Task
 from muster.mission.value_types import shown
 from muster_team.knowledge.effects import Memory
-from muster_team.knowledge.epoch_base import tasks_added
 from muster_team.knowledge.joint_statements import Members
 from muster_team.knowledge.messages import Claim, Fact
 from muster_team.knowledge.new_tasks import content_of
+from muster_team.knowledge.orders import Orders, orders_among
+from muster_team.knowledge.verdicts import Refused
 from muster_team.negotiators.joint_starts import JointStarts
 from muster_team.negotiators.participant import Participant
 
@@ -34,9 +35,27 @@ class Negotiator(Participant):
         return self._identity.superseded
 
     @property
+    def convicted(self) -> frozenset[str]:
+        """Robots that have stated two different things."""
+        return frozenset(self._convictions.evidence)
+
+    @property
     def facts(self) -> frozenset[Fact]:
         """All facts that the robot knows."""
         return frozenset(self._owned.known.facts)
+
+    @property
+    def orders(self) -> Orders:
+        """The orders that the robot knows, and what became of each."""
+        return orders_among(self.facts, self.rules)
+
+    def is_final(self, order: Fact) -> bool:
+        """Whether what became of an order holds for the whole team: each of its robots has declared that it knows it.
+
+        An order that a robot gives from then on comes after it. Before that one may turn up that comes before it.
+        """
+        base = self._base
+        return base is not None and order in base.facts and set(base.routes) == set(self.rules.robots)
 
     @property
     def known(self) -> int:
@@ -119,7 +138,11 @@ class Negotiator(Participant):
         MissionError, ParameterError
             if the task does not fit into the mission, or there is one of its name.
         """
-        if task.id in {*self.rules.tasks, *(fact.task for fact in self.facts if fact.kind == "added")}:
+        orders = self.orders
+        given = {
+            f.task for f, verdict in orders.verdicts.items() if f.kind == "added" and not isinstance(verdict, Refused)
+        }
+        if task.id in {*self.rules.tasks, *given}:
             raise ParameterError(f"new task: {shown(task.id)}; expected an id that no task has")
         self._check(task)
         self._owned.say(task.id, "added", content_of(task))
@@ -173,5 +196,4 @@ class Negotiator(Participant):
 
     def _check(self, task: Task) -> None:
         """Raise MissionError unless a task fits into the mission with all tasks that this robot has heard of."""
-        known = [fact.content for fact in tasks_added(self.facts, self.rules)]
-        self.valuer.check([*known, content_of(task)])
+        self.valuer.check([*(fact.content for fact in self.orders.taken), content_of(task)])

@@ -9,9 +9,11 @@ from muster.mission.errors import ParameterError
 from muster.mission.value_types import shown
 from muster_team.auctions.epoch import Epoch
 from muster_team.knowledge.effects import Memory
-from muster_team.knowledge.epoch_base import Base, Rules
+from muster_team.knowledge.epoch_base import Base
 from muster_team.knowledge.facts import Knowledge, in_order
 from muster_team.knowledge.messages import Claim, Fact
+from muster_team.knowledge.rules import Rules
+from muster_team.knowledge.signatures import Signatures
 from muster_team.negotiators.joint_starts import JointStarts
 
 
@@ -55,10 +57,11 @@ class OwnedTasks:
         self.joint = JointStarts(self.robot, self.known, self.say)
 
     @classmethod
-    def remembered(cls, robot: str, incarnation: int, memory: Memory) -> OwnedTasks:
+    def remembered(cls, robot: str, incarnation: int, memory: Memory, signatures: Signatures) -> OwnedTasks:
         begun = {claim.task for claim in memory.claims if claim.begun}
         reserved = {fact.task: fact for fact in memory.reserved}
-        work = cls(robot, incarnation, begun=begun, refused=set(memory.refused), reserved=reserved)
+        known = Knowledge(signatures=signatures)
+        work = cls(robot, incarnation, known, begun=begun, refused=set(memory.refused), reserved=reserved)
         work.known.learn(memory.facts)
         return work
 

@@ -12,23 +12,40 @@ robot that has the lacking data sends it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from itertools import repeat
 from typing import Any
 
 from muster_team.auctions.epoch import Epoch
 from muster_team.auctions.valuation import Valuer
+from muster_team.knowledge.admission import admit, healed
 from muster_team.knowledge.effects import Counts, Memory, Notice, Notices, Outgoing
-from muster_team.knowledge.epoch_base import Base, Rules
+from muster_team.knowledge.epoch_base import Base
 from muster_team.knowledge.facts import in_order
-from muster_team.knowledge.messages import Claim, Declaration, Fact, Heartbeat, Message, Stage
+from muster_team.knowledge.messages import (
+    Birth,
+    Claim,
+    Declaration,
+    Evidence,
+    Fact,
+    Heartbeat,
+    Message,
+    Stage,
+)
+from muster_team.knowledge.rules import Rules
+from muster_team.knowledge.signatures import NO_KEYS, Signatures
+from muster_team.knowledge.verdicts import Refused
+from muster_team.membership.convictions import Convictions
 from muster_team.membership.identity import Identity
 from muster_team.membership.members import Members, Timeouts
 from muster_team.membership.peer_progress import PeerProgress
 from muster_team.membership.stalled_members import StalledMembers
 from muster_team.negotiators.owned_tasks import OwnedTasks
 from muster_team.negotiators.repairs import Repairs
+
+LEAP = 2**20
+"""The most epochs that a robot goes on at once. So no number that arrives uses up all that there are."""
 
 
 @dataclass
@@ -50,6 +67,8 @@ class Participant:
         for at-most-once tasks until robots that remember have declared together with it.
     absent
         robots that join later; nobody waits for them.
+    signatures
+        the proofs of who has stated what, where robots have keys of their own.
     """
 
     robot: str
@@ -60,17 +79,22 @@ class Participant:
     remembered: Memory | None = None
     forgot: bool = False
     absent: Collection[str] = ()
+    signatures: Signatures = NO_KEYS
 
     def __post_init__(self) -> None:
-        memory = self.remembered or Memory(knows=not self.forgot)
+        self.rules = replace(self.rules, misfit=self.valuer.misfit)
+        self._convictions = Convictions(self.signatures)
         self.members = Members(self.robot, self.timeouts)
         self.counts = Counts()
         self.notices = Notices()
+        memory, refused = healed(self.remembered or Memory(knows=not self.forgot), self.rules, self.signatures)
+        for reason in refused:
+            self._refuse(self.robot, reason)
         self.epochs: list[Epoch] = []  # those of which the base was found
         self.knows = memory.knows
         self._before = memory
         self._identity = Identity(self.robot, self.incarnation)
-        self._owned = OwnedTasks.remembered(self.robot, self.incarnation, memory)
+        self._owned = OwnedTasks.remembered(self.robot, self.incarnation, memory, self.signatures)
         self._peer_progress = PeerProgress(self.robot)
         self._stalled = StalledMembers(self.members)
         self._repairs = Repairs(self.robot, self.timeouts.retry_s)
@@ -107,13 +131,17 @@ class Participant:
         return self._due_s
 
     def handle(self, message: Message, now: float) -> list[Outgoing]:
-        """Process a message; return the messages to send."""
+        """Process a message; return the messages to send. What is refused changes nothing."""
         if self._identity.superseded:
+            return []
+        verdict = admit(self.rules, message, self.signatures)
+        if isinstance(verdict, Refused):
+            self._refuse(str(message.sender), verdict.reason)
             return []
         if not self._hear(message, now):
             return self._correct(message, now)
         out: list[Outgoing] = []
-        number = message.stage.epoch
+        number = min(message.stage.epoch, self.epoch.own.epoch + LEAP)
         if self.epoch.own.incarnation < self.incarnation:
             out += self._enter(max(number, self.epoch.own.epoch + 1), now)
         if number > self.epoch.own.epoch:
@@ -121,6 +149,12 @@ class Participant:
             out += self._enter(number, now)
         if number == self.epoch.own.epoch and self._absorb(message):
             out += self._go_on(now)
+        for robot, reason in self.epoch.take_refused():
+            self._refuse(robot or message.sender, reason)
+        for evidence in self.epoch.take_evidence():
+            self._convict(evidence)
+        if unknown := self._convictions.unknown_to(message):
+            out.append(Outgoing(self._message(None, evidence=unknown), message.sender))
         if self._restart_heard and self._is_outdated():
             out += self._enter(self.epoch.own.epoch + 1, now)
         self._peer_progress.hear(message, self.epoch.stage)
@@ -141,6 +175,22 @@ class Participant:
         if self._owned.unsent or (now >= self._due_s and not out):
             out.append(Outgoing(self._heartbeat(now)))
         return out
+
+    def _convict(self, evidence: Evidence) -> None:
+        """Count a robot out for good that has stated two different things, and tell the others."""
+        if not self._convictions.convict(evidence):
+            return
+        self.notices.tell("revoked", [evidence.robot])
+        if evidence.robot == self.robot:
+            self._identity.superseded = True  # a copy of this process states things too
+        else:
+            self.members.revoke(evidence.robot)
+            self._owned.epoch_due = True
+
+    def _refuse(self, sender: str, reason: str) -> None:
+        """Count what was refused, and tell of it once for each reason."""
+        self.counts.refused[sender] += 1
+        self.notices.tell_refused(sender, reason)
 
     @property
     def _base(self) -> Base | None:
@@ -164,7 +214,7 @@ class Participant:
     def _declaration(self, number: int, route: tuple[Claim, ...], rounds: int, now: float) -> Declaration:
         """The declaration of this robot in an epoch, with this route and after this number of rounds."""
         members = self.members.present(now)
-        return Declaration(
+        own = Declaration(
             robot=self.robot,
             incarnation=self.incarnation,
             epoch=number,
@@ -175,6 +225,7 @@ class Participant:
             incarnations=tuple(self.incarnation if r == self.robot else self.members.incarnation(r) for r in members),
             knows=self.knows,
         )
+        return self.signatures.sign(own)
 
     def _open(self, own: Declaration, now: float) -> list[Outgoing]:
         """Declare, and begin the auction of this epoch."""
@@ -182,7 +233,7 @@ class Participant:
         refused = frozenset(
             {*self._rules.tasks, *(f.task for f in work.known.facts)} if work.withdrawn else work.refused
         )
-        self.epoch = Epoch(own, self.rules, self.valuer, refused)
+        self.epoch = Epoch(own, self.rules, self.valuer, refused, signatures=self.signatures)
         self._restart_heard = work.epoch_due = False
         work.unsent.clear()  # the declaration contains them
         self._peer_progress.enter()
@@ -199,6 +250,10 @@ class Participant:
             return False
         if self.members.hear_from(message, now):
             self._note_restart(message.sender)
+        for birth in message.births:
+            self.members.hear_birth(birth)
+        for evidence in message.evidence:
+            self._convict(evidence)
         for heartbeat in message.heartbeats:
             self._hear_of(heartbeat, now)
         for said in message.declarations:
@@ -224,10 +279,16 @@ class Participant:
         if correction is None:
             return []
         self.counts.repairs += 1
-        return [Outgoing(self._message(None, heartbeats=(correction,)), message.sender)]
+        told = self._message(None, heartbeats=(correction,), births=self._births([correction]))
+        return [Outgoing(told, message.sender)]
 
     def _hear_of(self, heartbeat: Heartbeat, now: float) -> None:
-        """Note that a robot was alive. For this robot's own id it may be another process, or an earlier incarnation."""
+        """Note that a robot was alive. For this robot's own id it may be another process, or an earlier incarnation.
+
+        Where robots have keys, a later start counts only with its proof.
+        """
+        if self.signatures.has_keys and not self.members.is_born(heartbeat):
+            return
         if heartbeat.robot == self.robot:
             self._identity.may_renumber |= heartbeat.number == 0  # a correction: no rival lives
             if self._identity.renumber_above(heartbeat):
@@ -320,7 +381,8 @@ class Participant:
         return self._message(
             now,
             lacks=self.epoch.lacks,
-            heartbeats=self.members.heartbeats(self._identity.heartbeat, now),
+            heartbeats=(heard := self.members.heartbeats(self._identity.heartbeat, now)),
+            births=self._births(heard),
             unheard=self.members.unheard(now),
             facts=unsent,
             known=self._owned.known.digest,
@@ -334,7 +396,17 @@ class Participant:
             asks_s = self._repairs.asks_s(self._identity.number, len(self.epoch.own.members))
             self._due_s = sent_s + (self.timeouts.heartbeat_s if self.stage.ended else asks_s)
         agreed = tuple(sorted(self._peer_progress.agreed)) if self.stage.ended else ()
+        if sent_s is not None and (evidence := self._convictions.take_unsent()):
+            said["evidence"] = evidence
         return Message(self.robot, self.incarnation, self._identity.number, self.stage, agreed=agreed, **said)
+
+    def _births(self, heartbeats: Iterable[Heartbeat]) -> tuple[Birth, ...]:
+        """The proofs of the starts that heartbeats name."""
+        if not self.signatures.has_keys:
+            return ()
+        others = (self.members.birth_of(heartbeat) for heartbeat in heartbeats)
+        own = self.signatures.sign(Birth(self.robot, self.incarnation))
+        return (own, *(birth for birth in others if birth is not None))
 
     def _last_sale(self) -> dict[str, Any]:
         """The result of the last round, for members that have missed some of its bids."""

@@ -21,8 +21,9 @@ from muster.model.problem import Problem
 from muster_team.auctions.bundles import BundleValuer
 from muster_team.auctions.valuation import AuctionValuer, Valuer
 from muster_team.knowledge.effects import Memory
-from muster_team.knowledge.epoch_base import Rules, joint_among, teams_among
 from muster_team.knowledge.new_tasks import with_tasks
+from muster_team.knowledge.rules import Rules, joint_among, teams_among
+from muster_team.knowledge.signatures import NO_KEYS, Signatures
 from muster_team.membership.members import Timeouts
 from muster_team.negotiators.negotiator import Negotiator
 from muster_team.negotiators.robot_book import book_of_bundles, book_of_view
@@ -55,6 +56,7 @@ def negotiator_of(
     remembered: Memory | None = None,
     forgot: bool = False,
     absent: Collection[str] = (),
+    signatures: Signatures = NO_KEYS,
 ) -> Negotiator:
     """A robot that takes part, in the auction by default.
 
@@ -69,6 +71,7 @@ def negotiator_of(
         remembered=remembered,
         forgot=forgot,
         absent=absent,
+        signatures=signatures,
     )
 
 

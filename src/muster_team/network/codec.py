@@ -15,7 +15,19 @@ from collections.abc import Sequence
 from dataclasses import MISSING, fields, replace
 from typing import Any
 
-from muster_team.knowledge.messages import Claim, Declaration, Fact, Heartbeat, Message, RoundBids, Sold, Stage
+from muster_team.knowledge.messages import (
+    FACTS,
+    Birth,
+    Claim,
+    Declaration,
+    Evidence,
+    Fact,
+    Heartbeat,
+    Message,
+    RoundBids,
+    Sold,
+    Stage,
+)
 from muster_team.network.optional_parts import require_net
 from muster_team.network.plain_values import (
     COUNT,
@@ -33,7 +45,7 @@ from muster_team.network.plain_values import (
     rows,
 )
 
-PROTOCOL = 5
+PROTOCOL = 6
 """The version of the protocol, 0 to 255: of this table, and of the rules by which robots bid and agree."""
 
 
@@ -41,26 +53,25 @@ class OtherVersionError(MalformedError):
     """A message of another version of the protocol."""
 
 
-FACTS = ("done", "begun", "waived", "added", "moved", "cancelled", "ready", "left", "joined", "part")
-"""The kinds of facts."""
-
-
 def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
     """The table: the encoding of each field of a message, in the order of `Message`."""
+    bids = _proved(record(RoundBids, robot=robot, round=COUNT, bids=rows(_pair(task, NUMBER), 2)))
     claim = record(Claim, task=task, price=NUMBER, round=COUNT, begun=FLAG)
-    fact = record(Fact, task=task, robot=robot, kind=choice(*FACTS), order=COUNT, content=DATA)
+    fact = _proved(record(Fact, task=task, robot=robot, kind=choice(*FACTS), order=COUNT, content=DATA))
     sold = _sold(robot, task)
-    declaration = record(
-        Declaration,
-        robot=robot,
-        incarnation=COUNT,
-        epoch=COUNT,
-        members=many(robot),
-        route=rows(claim, 4),
-        facts=rows(fact, 5),
-        rounds=COUNT,
-        incarnations=_incarnations(),
-        knows=FLAG,
+    declaration = _proved(
+        record(
+            Declaration,
+            robot=robot,
+            incarnation=COUNT,
+            epoch=COUNT,
+            members=many(robot),
+            route=rows(claim, 4),
+            facts=rows(fact, 5),
+            rounds=COUNT,
+            incarnations=_incarnations(),
+            knows=FLAG,
+        )
     )
     return {
         "sender": robot,
@@ -68,7 +79,7 @@ def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
         "number": COUNT,
         "stage": record(Stage, epoch=COUNT, base=DATA, round=COUNT, ended=FLAG),
         "declarations": many(declaration),
-        "bids": many(record(RoundBids, robot=robot, round=COUNT, bids=rows(_pair(task, NUMBER), 2))),
+        "bids": many(bids),
         "sales": rows(sold, 3),
         "sales_from": COUNT,
         "lacks": many(robot),
@@ -77,10 +88,12 @@ def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
         "facts": rows(fact, 5),
         "known": COUNT,
         "unheard": many(robot),
+        "births": rows(record(Birth, robot=robot, incarnation=COUNT, proof=DATA), 3),
+        "evidence": many(_evidence(declaration, bids)),
     }
 
 
-PARTED = ("declarations", "bids", "sales", "heartbeats", "facts")
+PARTED = ("declarations", "bids", "sales", "heartbeats", "facts", "births", "evidence")
 """Fields that can be divided between several messages."""
 
 
@@ -89,6 +102,39 @@ def _pair(first: Form, second: Form) -> Form:
         lambda pair: (first.pack(pair[0]), second.pack(pair[1])),
         lambda pair: (first.unpack(pair[0]), second.unpack(pair[1])),
     )
+
+
+def _proved(form: Form) -> Form:
+    """A statement with its proof, if it has one: then an array of both takes the place of the last value."""
+
+    def pack(statement: Any) -> list[Any]:
+        plain: list[Any] = form.pack(statement)
+        return [*plain[:-1], [plain[-1], statement.proof]] if statement.proof else plain
+
+    def unpack(plain: Any) -> Any:
+        last = array(plain)[-1] if array(plain) else None
+        if type(last) is not list or len(last) != 2 or type(last[1]) is not bytes:
+            return form.unpack(plain)
+        return replace(form.unpack([*plain[:-1], last[0]]), proof=last[1])
+
+    return Form(pack, unpack)
+
+
+def _evidence(declaration: Form, bids: Form) -> Form:
+    """Evidence: its context, whether it is of declarations, and both statements."""
+
+    def pack(evidence: Evidence) -> list[Any]:
+        declared = isinstance(evidence.first, Declaration)
+        form = declaration if declared else bids
+        return [evidence.context, declared, form.pack(evidence.first), form.pack(evidence.second)]
+
+    def unpack(plain: Any) -> Evidence:
+        if len(array(plain)) != 4:
+            raise MalformedError("not evidence")
+        form = declaration if FLAG.unpack(plain[1]) else bids
+        return Evidence(DATA.unpack(plain[0]), form.unpack(plain[2]), form.unpack(plain[3]))
+
+    return Form(pack, unpack)
 
 
 def _sold(robot: Form, task: Form) -> Form:

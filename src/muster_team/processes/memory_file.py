@@ -1,7 +1,8 @@
 """The JSON file from which a robot's process continues after a restart.
 
 It is written before anything is sent and before work begins. So a restarted robot never contradicts in an epoch what it
-has stated in it before, and never waives a task that it has begun.
+has stated in it before, and never waives a task that it has begun. What
+no robot can mean is left out when the file is read.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import os
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from muster.mission.errors import Finding, InputError
 from muster_team.knowledge.effects import Memory
@@ -19,6 +20,8 @@ from muster_team.knowledge.messages import Claim, Fact
 from muster_team.negotiators.negotiator import Negotiator
 
 _SCHEMA = "muster-memory/1"
+
+E = TypeVar("E")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,20 +70,18 @@ def kept_in(file: Path, auction: str, robot: str) -> Kept:
     nothing = Kept(auction=auction, robot=robot)
     try:
         data = json.loads(file.read_text(encoding="utf-8"))
-        schema = data.pop("schema")
-        memory = None if data["memory"] is None else _memory(data["memory"])
-        found = replace(nothing, **data | {"memory": memory})
+        schema, whose, which = data["schema"], data["robot"], data["auction"]
     except FileNotFoundError:
         return nothing
-    except (UnicodeError, ValueError, AttributeError, KeyError, TypeError):
+    except (UnicodeError, ValueError, RecursionError, AttributeError, KeyError, TypeError):
         raise _wrong(file, "", "other content", "what --memory has written") from None
     if schema != _SCHEMA:
         raise _wrong(file, "schema", str(schema), _SCHEMA)
-    if found.robot != robot:
-        raise _wrong(file, "robot", found.robot, f"{robot}, or a new file")
-    if found.auction != auction:
+    if whose != robot:
+        raise _wrong(file, "robot", str(whose), f"{robot}, or a new file")
+    if which != auction:
         raise _wrong(file, "auction", "of another mission or other terms", "the same as before, or a new file")
-    return found
+    return replace(nothing, incarnation=_count(data.get("incarnation")), memory=_memory(data.get("memory", {})))
 
 
 def keeper(file: Path, kept: Kept, negotiator: Negotiator) -> Callable[[], None]:
@@ -103,19 +104,46 @@ def _plain(value: Any) -> Any:
     return sorted(value)
 
 
-def _memory(data: dict[str, Any]) -> Memory:
+def _memory(data: Any) -> Memory | None:
+    """What a robot knew. Entries that cannot be read are left out; then it does not remember everything."""
+    if data is None:
+        return None
+    given = data if isinstance(data, dict) else {}
+    claims = _entries(given.get("claims"), _claim)
+    facts, reserved = (_entries(given.get(key), _fact) for key in ("facts", "reserved"))
+    refused = _entries(given.get("refused"), lambda task: task if isinstance(task, str) else None)
+    whole = all(None not in entries for entries in (claims, facts, reserved, refused))
     return Memory(
-        claims=tuple(Claim(**claim) for claim in data["claims"]),
-        facts=_facts(data["facts"]),
-        epoch=int(data["epoch"]),
-        knows=bool(data["knows"]),
-        refused=frozenset(data["refused"]),
-        reserved=_facts(data["reserved"]),
+        claims=tuple(claim for claim in claims if claim is not None),
+        facts=tuple(fact for fact in facts if fact is not None),
+        epoch=_count(given.get("epoch")),
+        knows=whole and given.get("knows") is True,
+        refused=frozenset(task for task in refused if task is not None),
+        reserved=tuple(fact for fact in reserved if fact is not None),
     )
 
 
-def _facts(data: list[dict[str, Any]]) -> tuple[Fact, ...]:
-    return tuple(Fact(**fact | {"content": bytes.fromhex(fact["content"])}) for fact in data)
+def _entries(data: Any, read: Callable[[Any], E | None]) -> list[E | None]:
+    """The entries of a list; None for each that cannot be read, and for a list that is none."""
+    return [read(entry) for entry in data] if isinstance(data, list) else [None]
+
+
+def _claim(data: Any) -> Claim | None:
+    try:
+        return Claim(**data)
+    except TypeError:
+        return None
+
+
+def _fact(data: Any) -> Fact | None:
+    try:
+        return Fact(**data | {key: bytes.fromhex(data[key]) for key in ("content", "proof") if key in data})
+    except (TypeError, ValueError):
+        return None
+
+
+def _count(value: Any) -> int:
+    return value if type(value) is int and value >= 0 else 0
 
 
 def _wrong(file: Path, field: str, value: str, expected: str) -> InputError:

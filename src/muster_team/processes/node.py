@@ -16,6 +16,7 @@ from muster_team.network.codec import Codec, OtherVersionError
 from muster_team.network.encryption import OVERHEAD, Seal
 from muster_team.network.peer_sessions import PeerSessions
 from muster_team.network.plain_values import MalformedError
+from muster_team.network.robot_keys import PROOF_BYTES
 from muster_team.network.transport import Transport
 
 _LOOK_S = 0.25
@@ -42,7 +43,8 @@ class NodeStatus:
         messages sent by kind (`news`, `repairs`, `heartbeats`, `greetings`), their bytes on the network, messages
         received.
     refused
-        messages that were not accepted, by reason: as `PeerSessions.counts`, and `malformed`.
+        messages that were not accepted, by reason: as `PeerSessions.counts`, `malformed`, `unsigned` (not by the key of
+        the robot that they name), and `not_admitted` (see `admission`).
     lost_here
         as `Transport.lost_here`.
     rivals, superseded
@@ -99,7 +101,9 @@ class Node:
         self._codec, self._met = codec, None if seal is None else PeerSessions(seal)
         self._clock = clock or SystemClock()
         self._garbled: Counter[str] = Counter()
-        self._room = transport.room - (0 if seal is None else OVERHEAD + 1)
+        self._signatures = negotiator.signatures
+        self._proof_bytes = PROOF_BYTES if self._signatures.has_keys else 0
+        self._room = transport.room - (0 if seal is None else OVERHEAD + 1) - self._proof_bytes
 
     def __enter__(self) -> Self:
         self.start()
@@ -154,13 +158,18 @@ class Node:
             sent=self.sent.copy(),
             sent_bytes=self.sent_bytes.copy(),
             received=self.received,
-            refused=self._garbled + (Counter() if self._met is None else self._met.counts),
+            refused=self._refused(),
             lost_here=self.transport.lost_here,
             rivals=tuple(sorted(negotiator.rivals)),
             superseded=negotiator.superseded,
         )
 
-    def _take_in(self, data: bytes) -> None:
+    def _refused(self) -> Counter[str]:
+        not_admitted = Counter(not_admitted=self.negotiator.counts.refused.total())
+        return self._garbled + not_admitted + (Counter() if self._met is None else self._met.counts)
+
+    def _take_in(self, said: bytes) -> None:
+        proof, data = said[: self._proof_bytes], said[self._proof_bytes :]
         try:
             message = self._codec.decode(data)
         except OtherVersionError:
@@ -168,6 +177,9 @@ class Node:
         except MalformedError:
             self._garbled["malformed"] += 1
         else:
+            if not self._signatures.proves(message.sender, proof, data):
+                self._garbled["unsigned"] += 1
+                return
             self.received += 1
             self._send(self.negotiator.handle(message, self._clock.now()))
 
@@ -179,7 +191,8 @@ class Node:
     def _send(self, out: Iterable[Outgoing]) -> None:
         for outgoing in out:
             kind = "repairs" if outgoing.to is not None else "heartbeats" if outgoing.message.is_idle else "news"
-            pieces = self._codec.parts(outgoing.message, self._room)
+            parts = self._codec.parts(outgoing.message, self._room)
+            pieces = [self._signatures.proof_of(part) + part for part in parts]
             self._transmit(kind, pieces if self._met is None else map(self._met.close, pieces), outgoing.to)
 
     def _transmit(self, kind: str, pieces: Iterable[bytes], to: str | None) -> None:

@@ -42,7 +42,8 @@ def node_of(
         problem, params, kept.robot, incarnation=kept.incarnation, remembered=kept.memory, **how
     )
     codec = Codec([robot.id for robot in problem.robots], [task.id for task in problem.tasks])
-    node = Node(negotiator, transport, codec, Seal(key, bytes.fromhex(kept.auction), kept.robot, kept.incarnation))
+    context = bytes.fromhex(kept.auction) + negotiator.signatures.team
+    node = Node(negotiator, transport, codec, Seal(key, context, kept.robot, kept.incarnation))
     if file is not None:
         node.keep = keeper(file, kept, negotiator)
     return node

@@ -100,7 +100,8 @@ def _check_company(status: NodeStatus, negotiator: Negotiator, passed_s: float, 
         raise NetworkError(f"{status.robot}: the others speak another version; expected the same Muster everywhere")
     if refused["other_mission"]:
         raise NetworkError(
-            f"{status.robot}: the others hold another auction; expected everywhere the same mission and terms"
+            f"{status.robot}: the others hold another auction; expected everywhere the same mission and terms, and "
+            "the same roster"
         )
     if passed_s < min(limits.wait_s, limits.limit_s):
         return

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import select
 import signal
 import subprocess
 import sys
@@ -74,6 +75,7 @@ class Team:
         self._pids: dict[tuple[str, int], int] = {}
         self._pipes: dict[str, Connection] = {}  # of those that live
         self._spare_pipes: dict[tuple[str, int], Connection] = {}  # processes that are not taken yet
+        self._waiting: dict[str, list[object]] = {}  # for robots that have not read what came before
 
     def __enter__(self) -> Team:
         self._factory_pipe, theirs = Pipe()
@@ -148,14 +150,30 @@ class Team:
         with suppress(ProcessLookupError):
             os.kill(self.pids[robot], signal.SIGKILL)
 
-    def send(self, robot: str, report: object) -> None:
-        """Send something to a robot; nothing if it has just ended."""
-        if robot in self._pipes:
-            with suppress(OSError):
-                self._pipes[robot].send(report)
+    def send(self, robot: str, report: object, *, latest: bool = False) -> None:
+        """Send something to a robot; nothing if it has just ended.
+
+        What a robot does not read waits for it, and holds up nobody. Of reports of a kind of which the `latest` is
+        enough, no other waits.
+        """
+        if robot not in self._pipes:
+            return
+        waiting = self._waiting.setdefault(robot, [])
+        if latest:
+            waiting[:] = [other for other in waiting if type(other) is not type(report)]
+        waiting.append(report)
+        self._send_waiting(robot)
+
+    def _send_waiting(self, robot: str) -> None:
+        waiting = self._waiting.get(robot, [])
+        with suppress(OSError):
+            while waiting and robot in self._pipes and _has_room(self._pipes[robot]):
+                self._pipes[robot].send(waiting.pop(0))
 
     def poll(self, wait_s: float) -> None:
         """Process all reports of robots; wait for the first one for at most `wait_s`."""
+        for waits in list(self._waiting):
+            self._send_waiting(waits)
         ends: dict[object, str | None] = {pipe: robot for robot, pipe in self._pipes.items()}
         for end in wait([self._factory_pipe, *self._pipes.values()], wait_s):
             robot = ends.get(end)
@@ -243,10 +261,16 @@ class Team:
         self._take_reports(robot)  # its last reports may contain more than the exit code
         self.ended[robot] = why
         pipe = self._pipes.pop(robot, None)
+        self._waiting.pop(robot, None)
         if pipe is not None:
             pipe.close()
         if self.began_s is None:
             raise MusterError(f"{robot}: {why} before the auction began; expected it to take part")
+
+
+def _has_room(pipe: Connection) -> bool:
+    """Whether a message can be written at once: a socket counts as writable only while most of its buffer is free."""
+    return bool(select.select([], [pipe], [], 0)[1])
 
 
 def timeouts_for(robots: int) -> Timeouts:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from muster.execution.changes import may_bring_work
 from muster.mission.errors import MusterError
@@ -17,13 +17,16 @@ from muster.simulation import SimulatedWorld
 from muster.state import OtherEvent
 from muster_team.knowledge.messages import Stage
 from muster_team.negotiators.methods import method_named
-from muster_team.processes.process_reports import TeamSetup
+from muster_team.processes.process_reports import SHOW, TeamSetup
 from muster_team.processes.team import Team
 from muster_team.runs.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
 from muster_team.runs.team_log import TeamLog
 
 _STEP_S = 0.05
 """The real time between two steps, seconds."""
+
+_ANSWER_S = 0.5
+"""The real time within which a robot is expected to tell its view, before the next one is asked."""
 
 _MOST_STEP_S = 0.5
 """The longest step in the mission's time, seconds: robots receive no sensor data within a step."""
@@ -54,6 +57,7 @@ class RobotBodies:
         self._last_move: dict[str, Event] = {}  # of each task
         self._orders: dict[str, int] = {}  # that bodies were given
         self._agreed_at: Stage | None = None  # of the auction, when its plan was taken in last
+        self._asked, self._ask_again_s = -1, 0.0  # how often robots were asked for their view, and when the next is
 
     def take_report(self, robot: str, report: object) -> None:
         """Process what a robot sends to its body, or reports of itself."""
@@ -110,7 +114,8 @@ class RobotBodies:
         for robot in self.team.living:
             said = self._telemetry_source.ports[robot].telemetry()
             assert said is not None
-            self.team.send(robot, BodyState(self.time_s, said, self._orders.get(robot, 0), self._log.used[robot]))
+            body = BodyState(self.time_s, said, self._orders.get(robot, 0), self._log.used[robot])
+            self.team.send(robot, body, latest=True)
             self._log.see(robot, said, self.time_s)
         self.team.poll(0.0)  # even if the step took all the time: unread reports fill the pipes
         while (left_s := until_s - time.monotonic()) > 0:
@@ -145,11 +150,20 @@ class RobotBodies:
         stage = self.team.progress[connected[0]].stage
         if stage == self._agreed_at:
             return
-        for view in self.team.views(connected[:1]).values():
-            if view.stage != stage:  # the robot has gone on meanwhile, and there is no agreement on its route yet
-                return
+        views = (self.team.progress[robot].view for robot in connected)
+        view = next((view for view in views if view is not None and view.stage == stage), None)
+        if view is None:
+            self._ask_for_view(connected)
+        else:
             self._agreed_at = stage
             self._log.agreed(self._method.plan(self._setup.problem, self._setup.terms, view, None), self.time_s)
+
+    def _ask_for_view(self, robots: Sequence[str]) -> None:
+        """Ask one robot after another what it has agreed to; one that does not answer soon holds up nobody."""
+        if time.monotonic() >= self._ask_again_s:
+            self._ask_again_s = time.monotonic() + _ANSWER_S
+            self._asked += 1
+            self.team.send(robots[self._asked % len(robots)], SHOW)
 
     def _take_event(self, event: Event) -> None:
         """Apply an event to bodies, processes and their radio; send an event that concerns tasks to one robot."""

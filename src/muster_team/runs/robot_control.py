@@ -23,10 +23,10 @@ from muster.state import OtherEvent
 from muster.state.task_events import MISSED, Ends, TaskRefused
 from muster.state.task_ledger import moved
 from muster_team.auctions.capabilities import refuse_once_together
-from muster_team.knowledge.epoch_base import tasks_added
 from muster_team.knowledge.facts import deeds, in_order
-from muster_team.knowledge.messages import Fact
+from muster_team.knowledge.messages import ORDERS, Fact
 from muster_team.knowledge.new_tasks import content_of, task_of
+from muster_team.knowledge.orders import Orders
 from muster_team.negotiators.negotiator import Negotiator
 
 NOTICE_HEARTBEATS = 3.0
@@ -112,6 +112,8 @@ class RobotControl:
         self._hand = self._executor.crew[port.robot]
         self._hand.recall(used)
         self._learned: set[Fact] = set()
+        self._answered: set[Fact] = set()  # orders that were refused
+        self._dropped: set[str] = set()  # the tasks of those that were known before
         self._known = 0  # the digest of what was learned
         self._first = 0  # the number of the first event of this tick
         self._left_with: dict[str, tuple[float, float]] = {}  # the usage for tasks broken off, the last time
@@ -132,6 +134,7 @@ class RobotControl:
         self._first = self._executor.events.total
         self._break_off()
         self._learn()
+        self._give_back_dropped()
         wanted = self._wanted
         if not self._hand.out and (wanted != self._hand.route or any(map(self._too_late_for, wanted))):
             self._executor.plan_again(OtherEvent(kind="agreed"))
@@ -259,25 +262,48 @@ class RobotControl:
         if self._known == self._negotiator.known:
             return
         facts, self._known = in_order(self._negotiator.facts), self._negotiator.known
-        added = frozenset(tasks_added(facts, self._negotiator.rules))
-        tasks = self._executor.ledger.tasks
+        orders = self._negotiator.orders
+        taken, tasks = frozenset(orders.taken), self._executor.ledger.tasks
         for fact in facts:
-            holds = fact in added if fact.kind in ("added", "moved") else fact.task in tasks
+            holds = fact in taken if fact.kind in ORDERS else fact.task in tasks
             if fact in self._learned or not holds:
                 continue
             self._learned.add(fact)
             if fact.kind == "cancelled":
-                self._executor.report(Event(at_s=0.0, cancel_task=fact.task))
-                self._negotiator.abandon(fact.task)
+                self._drop(fact.task)
             elif fact.kind == "moved":
                 move = MovedTask(task=fact.task, position=task_of(fact.content).position)
-                self._executor.report(Event(at_s=0.0, move_task=move))
+                self._executor.report_if_it_fits(Event(at_s=0.0, move_task=move))
             elif fact.kind == "added" and fact.task not in tasks:
-                self._executor.report(Event(at_s=0.0, new_task=task_of(fact.content)))
+                self._executor.report_if_it_fits(Event(at_s=0.0, new_task=task_of(fact.content)))
+        self._answer(orders)
         for task, times in deeds(facts).items():
             if task in tasks:
                 self._count_as_done(task, times[0])
         self._negotiator.joint.leave_of_last_life(self._unit)
+
+    def _answer(self, orders: Orders) -> None:
+        """Give up orders that do not count any more; whoever was given such an order tells why."""
+        for fact, reason in orders.refused.items():
+            if fact in self._answered:
+                continue
+            self._answered.add(fact)
+            if fact.robot == self._negotiator.robot:
+                self._refuse(fact.task, f"order: {reason}")
+            if fact in self._learned and fact.kind == "added":
+                self._drop(fact.task)
+                self._dropped.add(fact.task)
+
+    def _give_back_dropped(self) -> None:
+        """A task with the name of an order that was dropped is another one, which the executor cannot take in."""
+        for task in filter(self._negotiator.owns, sorted(self._dropped)):
+            self._refuse(task, "its name was that of an order that does not count")
+            self._negotiator.release(task)
+
+    def _drop(self, task: str) -> None:
+        """A task need not be done any more."""
+        self._executor.report_if_it_fits(Event(at_s=0.0, cancel_task=task))
+        self._negotiator.abandon(task)
 
     def _count_as_done(self, task: str, by: Sequence[Fact]) -> None:
         """A task was done, as these facts say. A robot may have done its part, and hear only now that others have."""

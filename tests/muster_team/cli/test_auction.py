@@ -242,7 +242,10 @@ def test_another_key_and_another_mission_are_told(muster, three, ports):
     told = ended(*(robot(name, ports, "--wait", 6, **more) for name, more in others.items()))
     assert [(code, out) for code, out, _ in told] == [(2, "")] * 3
     by_mission, by_key = [err for *_, err in told[:2]], told[2][2]
-    assert any("hold another auction; expected everywhere the same mission and terms\n" in err for err in by_mission)
+    assert any(
+        "hold another auction; expected everywhere the same mission and terms, and the same roster\n" in err
+        for err in by_mission
+    )
     *_, last = by_key.splitlines()  # it may have said before that it is alone
     assert last.startswith("c: ")
     assert last.endswith(" messages, none made with this key; expected the same key everywhere")

@@ -7,9 +7,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from muster import Task
-from muster_team.knowledge.epoch_base import Rules, agreed
+from muster_team.knowledge.epoch_base import agreed
 from muster_team.knowledge.messages import Claim, Declaration, Fact
 from muster_team.knowledge.new_tasks import content_of
+from muster_team.knowledge.rules import Rules
 
 ROBOTS = ("a", "b", "c", "d")
 TASKS = tuple("012345")

@@ -141,3 +141,19 @@ def test_robots_end_with_the_one_that_started_them(how):
     while any(exists(pid) for pid in pids):
         assert time.monotonic() < guard_s
         time.sleep(0.05)
+
+
+def test_a_robot_that_stands_still_holds_up_nobody_who_sends_to_it():
+    """Far more is sent than a pipe holds; of what is enough once the latest waits, of the rest all."""
+    with team_of(problem_of(2, 4)) as team:
+        until(team, lambda: len(team.progress) == 2)
+        os.kill(team.pids["r_0"], signal.SIGSTOP)
+        for k in range(200):
+            team.send("r_0", b"x" * 10_000, latest=True)
+            team.send("r_0", {"number": k, "filler": "x" * 10_000})
+        kinds = [type(word) for word in team._waiting["r_0"]]
+        assert kinds.count(bytes) == 1
+        assert kinds.count(dict) > 100
+        assert team.views(["r_1"]).keys() == {"r_1"}
+        os.kill(team.pids["r_0"], signal.SIGCONT)
+        until(team, lambda: not team._waiting["r_0"])

@@ -12,6 +12,8 @@ from muster.mission.model import MovedTask
 from muster.running.state_estimation import with_state_estimation
 from muster.simulation import NO_NOISE, KinematicWorld, Noise
 from muster_team.knowledge.messages import Stage
+from muster_team.processes.process_reports import SHOW
+from muster_team.runs import robot_bodies as bodies_module
 from muster_team.runs.pipe_messages import BodyState, OperatorEvent, WorkReport
 from muster_team.runs.robot_bodies import RobotBodies
 from muster_team.runs.simulation import setup_of
@@ -33,7 +35,7 @@ class Processes:
         self.living, self.ended, self.progress, self.told = ["a", "b"], {}, {}, []
         self._on_report, self._last_words, self._killed = on_report, last_words, []
 
-    def send(self, robot, word):
+    def send(self, robot, word, *, latest=False):
         self.told.append((robot, word))
 
     def kill(self, robot):
@@ -57,9 +59,6 @@ class Processes:
     def agree(self, robots):
         self.asked_of = list(robots)
         return "a" in self.progress
-
-    def views(self, robots):
-        return {"a": SimpleNamespace(stage=Stage(3, b"base"))}
 
 
 def did(*events):
@@ -111,9 +110,25 @@ def test_what_a_robot_was_told_that_is_gone_another_is_told_unless_it_does_not_h
 
 def test_the_plan_of_a_robot_that_has_gone_on_since_all_agreed_is_not_taken_in(tmp_path):
     robot_bodies, log = bodies_of([], tmp_path)
-    robot_bodies.team.progress["a"] = SimpleNamespace(stage=Stage(2, b"base", 1, ended=True))
+    view = SimpleNamespace(stage=Stage(3, b"base"))
+    robot_bodies.team.progress = {
+        name: SimpleNamespace(stage=Stage(2, b"base", 1, ended=True), view=view) for name in "ab"
+    }
     robot_bodies.step(1.0)
     assert log.account.objective_planned is None
+
+
+def test_a_robot_that_does_not_tell_its_view_holds_up_nobody_and_another_is_asked(tmp_path, monkeypatch):
+    robot_bodies, _ = bodies_of([], tmp_path)
+    stage = Stage(2, b"base", 1, ended=True)
+    robot_bodies.team.progress = {name: SimpleNamespace(stage=stage, view=None) for name in "ab"}
+    now_s = [100.0]
+    monkeypatch.setattr(bodies_module, "_STEP_S", 0.0)
+    monkeypatch.setattr(bodies_module.time, "monotonic", lambda: now_s[0])
+    for _ in range(4):
+        robot_bodies.step(1.0)
+        now_s[0] += 0.4
+    assert [robot for robot, word in robot_bodies.team.told if word == SHOW] == ["a", "b"]
 
 
 def test_the_radio_of_a_robot_works_that_was_cut_off_then_failed_and_returns(tmp_path):

@@ -1,5 +1,6 @@
 """Robots that decide for themselves do all that can be done, once, whatever happens to them and to their network."""
 
+from dataclasses import replace
 from random import Random
 
 import pytest
@@ -167,7 +168,8 @@ def test_a_new_task_that_is_heard_before_what_it_waits_for_is_done_after_that():
 def test_of_two_places_of_a_task_the_last_holds_though_it_is_heard_first():
     team = SimulatedTeam(square())
     team.run(2.0)
-    first, last = (Task(id="0", position=(x, 5.0), duration_s=0.0) for x in (5.0, 30.0))
+    task = next(task for task in square().tasks if task.id == "0")
+    first, last = (replace(task, position=(x, 5.0)) for x in (5.0, 30.0))
     hear(team, "r_0", Fact("0", "r_1", "moved", 2, content_of(last)))
     team.run(2.2)
     hear(team, "r_0", Fact("0", "r_1", "moved", 1, content_of(first)))
@@ -364,3 +366,27 @@ def test_a_robot_that_comes_late_takes_tasks():
     team.controls["r_0"].take_event(Event(at_s=0, new_task=Task(id="new", position=mission.robots[3].position)))
     assert ends(team)["new"] == 1
     assert ("r_3", "new") in {(robot, data["task"]) for _, robot, kind, data in team.told if kind == "ends"}
+
+
+def test_an_order_that_contradicts_one_given_elsewhere_is_answered_by_whom_it_was_given_to_and_left():
+    mission = Mission(
+        robots=tuple(Robot(id=f"r_{k}", position=(40.0 * k, 0.0)) for k in range(2)),
+        tasks=tuple(Task(id=str(k), position=(10.0 * k, 30.0), duration_s=0.0) for k in range(4)),
+    )
+    team = SimulatedTeam(mission, delay_s=0.02)
+    team.run(2.0)
+    team.net.cut(["r_0"], ["r_1"])
+    team.run(7.0)
+    one = Task(id="x", position=(0.0, 60.0), prerequisites=("3",), same_robot_as=("2",), duration_s=0.0)
+    other = Task(id="x", position=(40.0, 60.0), duration_s=0.0)
+    assert team.controls["r_0"].take_event(Event(at_s=0, new_task=one)) is None
+    assert team.controls["r_1"].take_event(Event(at_s=0, new_task=other)) is None
+    team.run(9.0)
+    team.net.heal()
+    ends(team)
+    told = [(robot, data["task"], data["reason"]) for _, robot, kind, data in team.told if kind == "task_refused"]
+    orders = [node.orders for node in team.net.nodes.values()]
+    (refused,) = orders[0].refused
+    assert all(list(found.refused) == [refused] for found in orders)
+    assert (refused.robot, "x", 'order: there is a task "x"') in told
+    assert {robot for robot, task, _ in told if task == "x"} == {refused.robot}

@@ -1,0 +1,115 @@
+"""Operators on both sides of cuts give orders at the same time: all robots take the same ones, and each is answered."""
+
+from dataclasses import replace
+from functools import partial
+from random import Random
+
+from tests.muster_team.byzantine.trial import keys_of
+from tests.muster_team.networks import line_mission
+from tests.muster_team.trials.random_missions import random_mission, with_times
+from tests.trials import Report
+
+from muster import Task
+from muster.allocation.auctions.auction import Parameters
+from muster.mission.errors import MissionError, ParameterError
+from muster.model.problem import Problem
+from muster_team.knowledge.orders import orders_among
+from muster_team.negotiators.participation import negotiator_of
+from muster_team.network.memory_network import LinkConditions, MemoryNetwork
+
+
+def orders_trial(seed):
+    """The report of one run."""
+    random, report = Random(seed), Report(seed)
+    mission = line_mission(robots=5, tasks=12)
+    if random.random() < 0.6:
+        mission = random_mission(random, robots=5, tasks=9, once=0.1)
+    if random.random() < 0.5:
+        mission = with_times(mission, random)
+    problem = Problem.compile(mission).ready()
+    robots = [robot.id for robot in problem.robots]
+    keys = keys_of(robots)
+    make = partial(negotiator_of, problem, Parameters())
+    net = MemoryNetwork(
+        lambda robot, number: make(robot, incarnation=number, signatures=keys[robot]),
+        robots,
+        seed,
+        LinkConditions(delay_s=0.02, loss=random.choice((0.0, 0.1))),
+    )
+    with report.trying():
+        net.start()
+        net.run(3.0)
+        given = _give_orders(net, robots, random, report)
+        net.heal()
+        agreed = net.run(net.now + 90.0, lambda: _agree(net))
+        report.check(agreed, "the robots do not agree")
+        _look(net, given, report)
+    return report
+
+
+def _give_orders(net, robots, random, report):
+    """Orders of two to six operators, of which some are given apart; the facts that state them."""
+    if random.random() < 0.7:
+        split = random.randrange(1, len(robots))
+        net.cut(robots[:split], robots[split:])
+        net.run(net.now + random.choice((0.0, 3.0, 8.0)))
+    given = {}
+    for k in range(random.randint(2, 6)):
+        robot = random.choice(robots)
+        node = net.nodes[robot]
+        before = {fact for fact in node.facts if fact.kind in ("added", "moved")}
+        try:
+            _order(node, k, random)
+        except (MissionError, ParameterError):
+            report.counts["refused at once"] += 1
+        for fact in node.facts - before:
+            if fact.kind in ("added", "moved"):
+                given[fact] = robot
+        if random.random() < 0.5:
+            net.run(net.now + random.choice((0.005, 0.03, 1.0)))
+    return given
+
+
+def _order(node, k, random):
+    tasks = [*node.rules.tasks, *(fact.task for fact in node.orders.taken if fact.kind == "added")]
+    place = (random.uniform(0, 100), random.uniform(0, 10))
+    if random.random() < 0.25:
+        name = random.choice(list(node.rules.tasks))
+        problem = node.valuer.problem
+        task = next((task for task in problem.tasks if task.id == name), None)
+        if task is not None:
+            node.move(replace(task, position=place))
+        return
+    name = f"new {random.randrange(2)}" if random.random() < 0.4 else f"new {k} of {node.robot}"
+    kind = random.randrange(6)
+    others = random.sample(tasks[:3] + tasks[len(node.rules.tasks) :], 2)  # few, so that orders contradict each other
+    keys = [
+        {},
+        {"prerequisites": tuple(others)},
+        {"prerequisites": tuple(others[:1]), "starts_with": tuple(others[1:])},
+        {"starts_with": tuple(others[:1])},
+        {"same_robot_as": tuple(others[:1]), "other_robot_than": tuple(others[1:])},
+        {"other_robot_than": tuple(others[:1])},
+    ][kind]
+    node.announce(Task(id=name, position=place, **keys))
+
+
+def _look(net, given, report):
+    nodes = list(net.nodes.values())
+    verdicts = [node.orders.verdicts for node in nodes]
+    report.check(all(found == verdicts[0] for found in verdicts), "robots see orders differently")
+    for fact in given:
+        report.counts[type(verdicts[0][fact]).__name__] += 1
+        report.check(all(node.is_final(fact) for node in nodes), f"{fact.task} is not answered")
+    taken = orders_among(nodes[0].facts, nodes[0].rules).taken
+    there = {*nodes[0].rules.tasks, *(fact.task for fact in taken)}
+    for node in nodes:
+        report.check({claim.task for claim in node.route} <= there, f"{node.robot} owns what there is not")
+    routes = [{robot: node.valuer.route(robot) for robot in node.rules.robots} for node in nodes]
+    report.check(all(other == routes[0] for other in routes), "views differ")
+
+
+def _agree(net):
+    nodes = list(net.nodes.values())
+    together = all(node.settled and set(node.epoch.own.members) == set(net.nodes) for node in nodes)
+    return together and len({node.stage for node in nodes}) == 1 and len({node.known for node in nodes}) == 1
