@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import shapely
 
 from muster import (
     Camera,
@@ -22,7 +23,7 @@ from muster import (
     solve,
 )
 from muster.mission.model import Event, Work
-from muster.motion.map_world import World
+from muster.motion.map_world import Body, World
 from muster.motion.maps.occupancy_rules import read_grid
 from muster.running.run_request import RunRequest
 from muster.state import MissionState, checkpoint_of, restored
@@ -167,6 +168,16 @@ def test_what_cameras_find_while_robots_explore_becomes_a_task():
     assert report.ground.frontiers > 0
 
 
+def test_a_wide_robot_that_joins_keeps_off_what_was_seen_before():
+    mission = room((6.0, 0.0, 0.3, 5.0), tasks=[(11.0, 1.0)])
+    run = Simulation(mission, solve(mission, "greedy"), unknown=True)
+    run.advance(1.0)
+    wide = Body(0.8, "ground")
+    way = run._ground.ground.way(wide, (1.5, 2.0), (10.0, 2.0)).points
+    face = shapely.LineString([(6.0, 0.0), (6.0, 5.0)])
+    assert shapely.LineString(way).distance(face) > 0.79
+
+
 def test_events_tell_the_map_from_its_beginning_and_the_state_folds_it():
     mission = room(*POCKET, tasks=[(11.0, 4.0)])
     run = Simulation(mission, solve(mission, "greedy"), unknown=True)
@@ -208,6 +219,8 @@ def test_what_does_not_go_together_is_refused():
         RunRequest(explore=True)
     with pytest.raises(ParameterError, match="traffic"):
         RunRequest(unknown=True, traffic="reserve")
+    with pytest.raises(ParameterError, match="law"):
+        RunRequest(unknown=True, law="trajectory")
     with pytest.raises(ParameterError, match="save_map"):
         simulate(mission := load("6T-2R"), solve(mission, "greedy"), save_map="built.yaml")
     with pytest.raises(ParameterError, match="unknown: mission 6T-2R has no map"):

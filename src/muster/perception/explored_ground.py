@@ -224,6 +224,7 @@ class ExploredGround:
         else:
             spare = _HALF + _SPARE if certainty == CERTAIN else -_HALF
             least = max(body.radius_m + spare * cell_m, _HALF * cell_m)
+        self.seen.require_clearance(least + cell_m)
         near: Bools = self.seen.clearances < least
         return self._by_rule(body, certainty) | near
 

@@ -128,6 +128,12 @@ class OccupancyMap:
             self._keep_off(fresh)
         return fresh, freed or len(fresh) > 0
 
+    def require_clearance(self, clearance_m: float) -> None:
+        """Keep clearances up to this distance at least, from now on."""
+        if clearance_m > self.clearance_m:
+            self.clearance_m = clearance_m
+            self._keep_off(np.argwhere(self.occupied))
+
     def points_in(self, cells: Indices) -> Floats:
         """Return the mean points hit, (n, 2) metres in the map frame, in cells (n, 2) of rows and columns.
 

@@ -18,7 +18,7 @@ from muster.mission.value_types import Choice, Fault, Flag, Number, Path, Whole,
 from muster.mission.values.keywords import require_known
 from muster.mission.yaml_writer import plain
 from muster.motion.avoidance_names import AUTO, AVOIDANCE
-from muster.motion.laws import LAWS, PROFILE
+from muster.motion.laws import LAWS, PROFILE, TRAJECTORY
 from muster.motion.noise import CALM, NO_NOISE, Noise, Wind
 from muster.planning.options import LARGEST_SEED, PlanningOptions
 from muster.running.fleet_registry import FLEETS, checked_settings, setting_names, settings_class
@@ -249,6 +249,8 @@ class RunRequest(Settings):
             yield Fault(("explore",), shown(True), "it together with unknown")
         if values["unknown"] and values["traffic"] == RESERVE:
             yield Fault(("traffic",), RESERVE, "free: ways are not known beforehand")
+        if values["unknown"] and values["law"] == TRAJECTORY:
+            yield Fault(("law",), TRAJECTORY, "profile or thesis: trajectories are rounded by the map")
         real = values["world"] not in WORLDS
         what, other = ("real robots", SIMULATED) if real else ("a simulated world", REAL)
         for f in specified(RunRequest):
