@@ -80,7 +80,7 @@ def test_three_tasks_for_the_only_robot_with_a_skill():
     skilled = [task(name, *at, requires=("C",)) for name, at in (("1", (4, 0)), ("2", (4, 4)), ("3", (0, 4)))]
     others = [task(f"t{k}", k, -k) for k in range(20)]
     team = [robot("r_1"), robot("r_0", work_capacity=10, skills=("C",))]
-    detail = "only r_0 can do them, and would use at least 12.00 m, of 10.00 m"
+    detail = "only r_0 can do them, and would use at least 12.00 m, of 10.00 m (others: skill, lacks C)"
     assert look(mission(team, [*others, *skilled])) == conflict("1", "2", "3", detail=detail)
 
 

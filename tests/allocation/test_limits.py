@@ -103,6 +103,14 @@ def test_a_lag_that_would_hold_a_prerequisite_back_for_too_long():
     assert found["b", "r_0"][0] == "prerequisite"
 
 
+def test_a_load_that_would_be_on_board_for_too_long():
+    """The rule that says how long is named, not the order of the two tasks."""
+    take, bring = task("take", 1, load=1), task("bring", 30, delivers="take", longest_aboard_s=10)
+    found = why([robot(load_capacity=1)], take, bring)
+    assert found["bring", "r_0"][0] == "aboard"
+    assert found["bring", "r_0"][1].startswith("begins at most 10 s after take ends")
+
+
 def test_relations_that_no_robots_keep():
     gripping, filming = robot(skills=("g",)), robot("r_1", skills=("f",))
     a, b = task("a", 6, requires=("g",)), task("b", 6, requires=("f",), same_robot_as=("a",), prerequisites=("a",))

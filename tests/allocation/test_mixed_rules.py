@@ -190,7 +190,9 @@ def test_a_shortfall_of_those_with_a_skill_is_found_where_all_together_have_enou
     (short,) = shortfalls(problem, range(5))
     assert (short.robots, short.everyone, short.resource) == (("r", "s"), False, "shift")
     assert (short.needed, short.available, short.left_out, short.more_robots) == (150, 120, 1, 1)
-    assert short.detail.startswith("5 tasks that only r, s can do: 150 robot-seconds of work in 120 of shift")
+    assert short.detail.startswith(
+        "5 tasks that only r, s can do (others: skill, lacks lift): 150 robot-seconds of work in 120 of shift"
+    )
 
 
 def test_a_teams_work_counts_for_each_member_as_long_as_for_the_slowest():

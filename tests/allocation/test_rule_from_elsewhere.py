@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 import muster
+from muster.allocation.bounds.feasibility import impossible
 from muster.allocation.reasons.explanations import unassigned
 from muster.mission.model import Mission, Robot, Task
 from muster.model import problem as compiled
@@ -60,6 +61,34 @@ def test_it_is_the_reason_why_a_task_is_left_out(monkeypatch, problem, rule, det
     (left,) = unassigned(problem, [[problem.task_index["near"]]])
     assert left.task == "far"
     assert [(reason.reason, reason.detail) for reason in left.reasons] == [("daylight", detail)]
+
+
+def test_it_is_the_reason_why_a_task_can_never_be_done(monkeypatch, problem):
+    """What gave the bound is named, and not the rule that ships and looks at bounds of its sort."""
+    monkeypatch.setattr(compiled, "all_rules", lambda: (*all_rules(), Daylight()))
+    (lost,) = impossible(problem)
+    said = "its route would end at 40 s at the earliest, it is to end by 25 s"
+    assert [(reason.reason, reason.detail) for reason in lost.reasons] == [("daylight", said)]
+
+
+@pytest.mark.parametrize(
+    ("give", "detail"),
+    [
+        (lambda parts: parts.ends(0, 15.0), "ends at 20 s at the earliest, its latest end is 15 s"),
+        (
+            lambda parts: parts.opens(0, [(0, 5)]),
+            "arrives at 20 s at the earliest, its last time to begin closes at 5 s",
+        ),
+    ],
+)
+def test_the_rule_of_a_bound_that_holds_is_named_and_not_of_one_that_is_wider(monkeypatch, give, detail):
+    rule = Daylight()
+    rule.compile = lambda problem, parts: give(parts)
+    monkeypatch.setattr(compiled, "all_rules", lambda: (*all_rules(), rule))
+    task = Task(id="far", position=(20, 0), deadline_s=30, window_s=((0, 30),))
+    mission = Mission(robots=(Robot(id="r", position=(0, 0)),), tasks=(task,))
+    (lost,) = impossible(Problem.compile(mission))
+    assert [(reason.reason, reason.detail) for reason in lost.reasons] == [("daylight", detail)]
 
 
 def test_where_it_does_not_hold_the_task_fits(monkeypatch, problem):

@@ -1,15 +1,16 @@
-"""All orders in which a robot may do tasks, each with the best calls at stations: two on the way to a stop at most.
+"""All orders in which a robot may do tasks, each with the best calls at stations, whatever their order and number.
 
 Nothing is waited for but windows: neither other robots nor lags.
 """
 
 import math
 from dataclasses import dataclass, replace
-from itertools import permutations
 
 from muster.mission.goods import by_commodity
 from tests.carried_missions import frontiers
 from tests.carried_missions.frontiers import TINY
+
+MOST_CALLS = 6  # on the way to a stop: where robots unload between two swaps, three are needed
 
 
 @dataclass(frozen=True)
@@ -135,16 +136,26 @@ class RobotRoutes:
     # --- ways and work ---------------------------------------------------------------------------------------------
 
     def _ways(self, state, place, to):
-        """The states on arrival, directly and by way of one or two stations."""
-        direct = self._go(state, place, to)
-        yield from direct
-        for count in (1, 2):
-            for chosen in permutations(self.stations.values(), count):
-                there, last = [state], place
-                for station in chosen:
-                    there = [called for one in there for called in self._call(one, last, station)]
-                    last = station.position
-                yield from (arrived for one in there for arrived in self._go(one, last, to))
+        """The states on arrival, directly and after calls: as many as lead to a state that none before it covers."""
+        yield from self._go(state, place, to)
+        reached, wave = {name: [] for name in self.stations}, [(place, state)]
+        for _ in range(MOST_CALLS):
+            wave = [
+                (station.position, called)
+                for last, one in wave
+                for name, station in self.stations.items()
+                for called in self._call(one, last, station)
+                if self._is_new(called, reached[name])
+            ]
+            yield from (arrived for last, one in wave for arrived in self._go(one, last, to))
+
+    @staticmethod
+    def _is_new(state, known):
+        """Whether no known state covers one, which is known then."""
+        if any(other.covers(state) for other in known):
+            return False
+        known.append(state)
+        return True
 
     def _way(self, place, to):
         """The usage and the time of a way."""

@@ -91,6 +91,7 @@ def test_in_json(muster):
         },
         "unknown": False,
         "shortfalls": [],
+        "remedies": [],
         "unseen": [],
         "blocked": [],
         "cut_off": [],
@@ -119,6 +120,7 @@ def test_when_all_can_be_done(muster):
         "conflict": None,
         "unknown": False,
         "shortfalls": [],
+        "remedies": [],
         "unseen": [],
         "blocked": [],
         "cut_off": [],
@@ -173,7 +175,7 @@ def test_no_time(muster):
 def test_errors_in_json_have_all_keys(muster):
     code, out, err = muster("check", write("schema: muster/1\n"), "--format", "json")
     assert (code, err) == (2, "")
-    keys = ["errors", "impossible", "conflict", "unknown", "shortfalls", "unseen", "blocked", "cut_off"]
+    keys = ["errors", "impossible", "conflict", "unknown", "shortfalls", "remedies", "unseen", "blocked", "cut_off"]
     assert list(json.loads(out)) == keys
 
 

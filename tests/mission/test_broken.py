@@ -52,7 +52,8 @@ def test_json_has_the_same_findings(name, capsys, monkeypatch):
     out, err = capsys.readouterr()
     data = json.loads(out)
     assert (code, err) == (2, "")
-    assert list(data) == ["errors", "impossible", "conflict", "unknown", "shortfalls", "unseen", "blocked", "cut_off"]
+    others = ["conflict", "unknown", "shortfalls", "remedies", "unseen", "blocked", "cut_off"]
+    assert list(data) == ["errors", "impossible", *others]
     assert (data["conflict"], data["unknown"]) == (None, False)
     assert data["impossible"] == []
     assert [list(error) for error in data["errors"]] == [KEYS] * len(data["errors"])

@@ -335,8 +335,8 @@ def test_check_names_them_in_json(chain, capsys):
     out, err = capsys.readouterr()
     assert err == ""
     data = json.loads(out)
-    others = [data.pop(key) for key in ("conflict", "unknown", "shortfalls", "unseen", "blocked", "cut_off")]
-    assert others == [None, False, [], [], [], []]
+    keys = ("conflict", "unknown", "shortfalls", "remedies", "unseen", "blocked", "cut_off")
+    assert [data.pop(key) for key in keys] == [None, False, [], [], [], [], []]
     assert data == {
         "errors": [],
         "impossible": [

@@ -155,7 +155,8 @@ class Trial:
             self._no_plan(tasks, tasks.issubset, "said to be a conflict")
         self.report.counts["shortfalls"] += len(found.shortfalls)
         for short in found.shortfalls:
-            tasks, most = frozenset(short.tasks), len(short.tasks) - short.left_out
+            tasks = frozenset((*short.tasks, *short.after))
+            most = len(tasks) - short.alternatives - short.left_out
             what = f"tasks of which {short.left_out} at least are left out: {short.detail}"
             self._no_plan(tasks, lambda done, tasks=tasks, most=most: len(tasks & done) > most, what)
 

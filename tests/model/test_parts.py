@@ -42,16 +42,6 @@ def test_gaps_narrow_each_other():
     assert parts.gaps == {1: {0: (2, 9)}}
 
 
-def test_a_rule_does_not_bind_what_is_freed_of_it():
-    parts = Parts(robots=2, tasks=2)
-    parts.free = {1}
-    for k in range(2):
-        parts.opens(k, [(0, 1)])
-        parts.ends(k, 9)
-        parts.is_over(k, 9)
-    assert list(parts.openings) == list(parts.ends_by) == list(parts.over_by) == [0]
-
-
 def test_a_count_is_what_no_station_takes_off():
     count = Meter.count("tasks", np.ones(3), [2, math.inf])
     assert count.pending.tolist() == count.change.tolist() == [1, 1, 1]

@@ -88,8 +88,12 @@ class Possibilities:
         return meaning, i, j, [plan for plan in plans if j in plan[0][i]]
 
     def _conflict_holds(self, conflict):
+        detail, _, others = conflict.detail.partition(" (others: ")
+        names = (*conflict.tasks, *conflict.prerequisites)
+        if others and set().union(*map(self.doers, names)) - set(conflict.robots):
+            return False
         for pattern, check in TOGETHER:
-            found = re.fullmatch(pattern, conflict.detail)
+            found = re.fullmatch(pattern, detail)
             if found:
                 return check(self, conflict, *found.groups())
         return False

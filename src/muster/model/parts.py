@@ -115,38 +115,33 @@ class Parts:
     meters: list[Meter] = field(default_factory=list)
     energy: dict[int, tuple[float, float]] = field(default_factory=dict)
     rule: str = ""  # the word of the rule that contributes now; empty: none
-    free: set[int] = field(default_factory=set)  # robots, or tasks, that the rule which contributes now does not bind
+    given: dict[tuple[str, tuple[int, ...]], str] = field(default_factory=dict)  # the rule of each bound that holds
     words: dict[str, str] = field(default_factory=dict)  # by primitive, of the first rule that contributed any
 
     def opens(self, j: int, spans: Iterable[tuple[float, float | None]]) -> None:
         """Task j begins in one of these spans."""
-        if j in self.free:
-            return
         own = sorted((opens, math.inf if closes is None else closes) for opens, closes in spans)
+        self._give("openings", j)
         self.openings[j] = _common(self.openings[j], own) if j in self.openings else own
 
     def ends(self, j: int, latest_s: float) -> None:
         """Task j ends by a time."""
-        if j in self.free:
-            return
-        self.ends_by[j] = min(latest_s, self.ends_by.get(j, math.inf))
+        if latest_s < self.ends_by.get(j, math.inf):
+            self._give("ends_by", j)
+            self.ends_by[j] = latest_s
 
     def is_over(self, i: int, latest_s: float) -> None:
         """The route of robot i, its way to the end included, is over by a time."""
-        if i in self.free:
-            return
-        self.over_by[i] = min(latest_s, self.over_by.get(i, math.inf))
+        if latest_s < self.over_by.get(i, math.inf):
+            self._give("over_by", i)
+            self.over_by[i] = latest_s
 
     def lasts(self, i: int, most_s: float) -> None:
         """From leaving its start to the end of its route robot i takes at most so long, however late it leaves."""
-        if i in self.free:
-            return
         self.lasts_most[i] = min(most_s, self.lasts_most.get(i, math.inf))
 
     def rests(self, i: int, spans: Iterable[tuple[float, float | None]]) -> None:
         """Robot i drives and works in these spans alone: each leg and each work within one of them."""
-        if i in self.free:
-            return
         own = sorted((begins, math.inf if ends is None else ends) for begins, ends in spans)
         self.spans[i] = _common(self.spans[i], own) if i in self.spans else own
 
@@ -155,6 +150,8 @@ class Parts:
         if least_s > 0 or most_s < math.inf:
             self.bounded.add((before, j))
         least, most = self.gaps.setdefault(j, {}).get(before, (0.0, math.inf))
+        if most_s < most:
+            self._give("gaps", before, j)
         self.gaps[j][before] = max(least, least_s), min(most, most_s)
 
     def begin_together(self, j: int, k: int) -> None:
@@ -204,6 +201,9 @@ class Parts:
     def has_energy(self, i: int, room: float, at_start: float) -> None:
         """Robot i has energy for so much usage at most, and at first; stations give it more."""
         self.energy[i] = room, at_start
+
+    def _give(self, primitive: str, *of: int) -> None:
+        self.given[primitive, of] = self.rule
 
     def named(self, word: str) -> None:
         """Remember the word of the rule that has contributed, for the primitives of which there were none before."""

@@ -43,6 +43,10 @@ class PlanModel:
         """The word of the rule that gives one of these parts, by which reasons name it; empty: none does."""
         return next((self.parts.words[name] for name in primitives if name in self.parts.words), "")
 
+    def given_by(self, primitive: str, *of: int) -> str:
+        """The word of the rule whose bound of a task, a robot, or two tasks holds; empty: there is none."""
+        return self.parts.given.get((primitive, of), "")
+
     @property
     def tasks(self) -> int:
         return self.parts.tasks
@@ -186,11 +190,19 @@ class PlanModel:
         """For each task those of which none is done if it is."""
         return [sorted(self.parts.exclusive.get(j, ())) for j in range(self.tasks)]
 
+    @cached_property
+    def alternatives(self) -> list[list[int]]:
+        """The sets of tasks that exclude each other, directly or through others: a plan does one of each at most."""
+        pairs = [(j, k) for j, others in self.parts.exclusive.items() for k in others]
+        sets: dict[int, list[int]] = {}
+        for j, first in enumerate(joined(pairs, self.tasks) if pairs else ()):
+            sets.setdefault(first, []).append(j)
+        return [tasks for tasks in sets.values() if len(tasks) > 1]
+
     @property
     def most_done(self) -> int:
-        """How many tasks a plan does at most: of those that exclude each other one."""
-        pairs = [(j, k) for j, others in self.parts.exclusive.items() for k in others]
-        return len(set(joined(pairs, self.tasks))) if pairs else self.tasks
+        """How many tasks a plan does at most."""
+        return self.tasks - sum(len(tasks) - 1 for tasks in self.alternatives)
 
     def may_call(self, i: int, station: int) -> bool:
         """Whether a robot may call at a station."""

@@ -84,7 +84,6 @@ class Problem:
     levels: tuple[float, ...] = ()  # the energy of each robot at first, measured; inf: without bounds; empty: as stated
     mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
     waiting: Waiting = NO_WAITING  # that is expected on ways
-    freed: frozenset[tuple[str, int]] = frozenset()  # words of rules, and the robots or tasks that they do not bind
     past: Mapping[str, tuple[Task, ...]] | None = None  # of tasks that stand for what was done, that; None: it begins
     sooner: tuple[float, ...] = ()  # for each task when it must have ended, beside what rules say; empty: none
 
@@ -121,7 +120,6 @@ class Problem:
         own, work = tuple(self.robots[i] for i in robots), tuple(self.tasks[j] for j in tasks)
         number_in = {j: k for k, j in enumerate(tasks)}
         fixed = tuple(tuple(number_in[j] for j in self.fixed[i]) for i in robots) if self.fixed else ()
-        assert not self.freed, "a problem of which rules were freed is looked at as a whole"
         n, m = len(self.tasks), len(self.robots)
         stations = range(n + 2 * m, n + 2 * m + len(self.stations))
         places = [*tasks, *(n + i for i in robots), *(n + m + i for i in robots), *stations]
@@ -178,10 +176,9 @@ class Problem:
         parts = Parts(len(self.robots), len(self.tasks))
         for rule in self.rules:
             parts.rule = rule.word
-            parts.free = {number for word, number in self.freed if word == rule.word}
             rule.compile(self, parts)
             parts.named(rule.word)
-        parts.rule, parts.free = "", set()
+        parts.rule = ""
         for j, latest_s in enumerate(self.sooner):
             parts.ends(j, latest_s)
         due = np.array([math.inf if task.due_s is None else task.due_s for task in self.tasks])

@@ -80,7 +80,8 @@ class Checked:
     """What is wrong with a mission, which tasks can never be done, and its size (null if it cannot be read).
 
     `conflict` are tasks that no single plan can do together; `unknown` is true if that was not checked or not decided.
-    `shortfalls` prove that the work of the tasks is too much for the robots.
+    `shortfalls` prove that the work of the tasks is too much for the robots; `remedies` are the least changes of the
+    mission that lift them all.
     `unseen` are raster searches of which robots that may do them do not see all.
     `blocked` are robots that cannot get past each other, and lanes that do not lead where robots must go.
     `cut_off` are stations to which no robot has a way.
@@ -92,6 +93,7 @@ class Checked:
     conflict: dict[str, Any] | None
     unknown: bool
     shortfalls: list[dict[str, Any]]
+    remedies: list[dict[str, Any]]
     unseen: list[dict[str, Any]]
     blocked: list[dict[str, Any]]
     cut_off: list[dict[str, Any]]

@@ -84,7 +84,7 @@ class _Bounding:
         rules, begins = self._rules, self._begins
         for k, after, within in rules.gaps(j):
             begins[j] = max(begins[j], self._end(k) + after)
-            if math.isfinite(within):
+            if math.isfinite(within) and not rules.exclusive[j]:  # else another may be done in its place
                 begins[k] = max(begins[k], begins[j] - within - self._longest[k])
         unit = rules.units[rules.unit[j]]
         begins[unit] = begins[unit].max()

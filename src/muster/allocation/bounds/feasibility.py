@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import heapq
+import itertools
 import math
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 import numpy as np
 
+from muster.allocation.bounds.exclusions import Cause
 from muster.allocation.bounds.limits import Limits, narrowed, untimed
 from muster.mission.plan import Reason, Unassigned
 from muster.model.plan_model import ROUNDING
@@ -39,7 +41,7 @@ def impossible(problem: Problem) -> tuple[Unassigned, ...]:
 
     def reasons(j: int) -> tuple[Reason, ...]:
         befores = (lost[j], lost_before(j))  # a bound may have held only until what comes before it was lost
-        return tuple(_reason(problem, limits, i, j, _outlooks(limits, i, j, befores)) for i in robots)
+        return tuple(_reason(problem, limits, i, j, befores) for i in robots)
 
     return tuple(Unassigned(problem.tasks[j].id, reasons(j)) for j in order if j in lost)
 
@@ -65,15 +67,6 @@ def _lost_tasks(problem: Problem, limits: Limits) -> dict[int, str]:
                 lost[j] = problem.tasks[before].id
                 waiting.append(j)
     return lost
-
-
-def _outlooks(limits: Limits, i: int, j: int, befores: Sequence[str]) -> Iterator[Outlook]:
-    """What is known of a pair: first by the times that excluded it, then by all."""
-    steps = (limits.that_excluded(i, j), limits) if limits.is_timed else (limits,)
-    least = limits.usage[i, j] if limits.is_timed else _least_usage_with(limits.problem, i, [j])[0]
-    for bounds in steps:
-        for before in befores:
-            yield Outlook(bounds, float(least), before)
 
 
 def _out_of_reach(problem: Problem) -> Bools:
@@ -103,20 +96,36 @@ def _least_usage_with(problem: Problem, i: int, tasks: Sequence[int] | Indices) 
     return np.asarray(there + problem.legs(i, tasks, [problem.end(i)])[:, 0])
 
 
-def _reason(problem: Problem, limits: Limits, i: int, j: int, outlooks: Iterable[Outlook]) -> Reason:
-    """Why robot i can never do task j, which nobody can; the first outlook counts in which there is a reason.
+def _reason(problem: Problem, limits: Limits, i: int, j: int, befores: Sequence[str]) -> Reason:
+    """Why robot i can never do task j, which nobody can: what refuses or excluded the pair, else what comes before it.
 
-    Where no rule has words for it the rule that excluded the pair is named; where none did, no rule is.
+    Where the rule that excluded it has no words for that it is named alone.
     """
     robot = problem.robots[i].id
-    found = ((rule.word, rule.never(problem, i, j, outlook)) for outlook in outlooks for rule in problem.rules)
-    said = next(((word, detail) for word, detail in found if detail is not None), None)
-    if said is not None:
-        return Reason(robot, *said)
-    excluded = limits.rule_that_excluded(i, j) if limits.is_timed else None
-    if excluded is None:
-        return Reason(robot, "not-chosen", "no plan does the task, whoever might")
-    return Reason(robot, excluded[0], "no plan in which it does the task keeps the rule")
+    if (refused := problem.refusal(i, j)) is not None:
+        return Reason(robot, *refused)
+    least = float(limits.usage[i, j] if limits.is_timed else _least_usage_with(problem, i, [j])[0])
+    if (cause := limits.exclusions.cause(i, j)) is not None:
+        return _excluded(problem, cause, i, j, least, befores)
+    for before, rule in itertools.product(befores, problem.rules):
+        if (detail := rule.never(problem, i, j, Outlook(limits, least, before))) is not None:
+            return Reason(robot, rule.word, detail)
+    return Reason(robot, "not-chosen", "no plan does the task, whoever might")
+
+
+def _excluded(problem: Problem, cause: Cause, i: int, j: int, least: float, befores: Sequence[str]) -> Reason:
+    """What excluded a pair, as the rule says it that did.
+
+    Of a rule that looks at teams it may be no more than that what comes before the task is lost: that is said first.
+    """
+    robot, rule = problem.robots[i].id, cause.rule
+    lost = [] if rule.about_one else list(filter(None, befores))
+    for before, other in itertools.product(lost, problem.rules):
+        if other.about_one and (detail := other.never(problem, i, j, Outlook(cause.limits, least, before))) is not None:
+            return Reason(robot, other.word, detail)
+    found = (rule.never(problem, i, j, Outlook(cause.limits, least, before)) for before in befores)
+    detail = next((text for text in found if text is not None), "no plan in which it does the task keeps the rule")
+    return Reason(robot, rule.blamed(cause.limits, i, j), detail)
 
 
 def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:

@@ -10,6 +10,7 @@ import numpy as np
 
 from muster.model.plan_model import ROUNDING, PlanModel
 from muster.model.problem import Floats, Problem
+from muster.model.rules.rule import HeldBack
 from muster.model.rules.times import span, spans
 
 
@@ -34,13 +35,14 @@ class _Bound:
     then: int
     seconds: float
     said: str
+    word: str = ""  # of the rule that says how long after another a task may begin at most
 
 
-def gap_cycle(works: Works, tasks: Sequence[int]) -> str:
-    """Which gaps between tasks exclude each other, in words; empty: none do. By Bellman and Ford."""
+def gap_cycle(works: Works, tasks: Sequence[int]) -> HeldBack | None:
+    """Which gaps between tasks exclude each other; None: none do. By Bellman and Ford."""
     bounds = [bound for j in tasks for bound in _bounds(works, j)]
     if all(bound.seconds >= 0 for bound in bounds):
-        return ""  # nothing may begin only so long after another
+        return None  # nothing may begin only so long after another
     begin, raised_by = dict.fromkeys(tasks, 0.0), dict[int, _Bound]()
     last: _Bound | None = None
     for _ in range(len(tasks) + 1):
@@ -50,7 +52,7 @@ def gap_cycle(works: Works, tasks: Sequence[int]) -> str:
             if time > begin[bound.then] + ROUNDING * max(1.0, abs(time)):
                 begin[bound.then], raised_by[bound.then], last = time, bound, bound
         if last is None:
-            return ""
+            return None
     assert last is not None  # as it is not after the last round
     return _said(_cycle_before(raised_by, last.then, len(tasks)))
 
@@ -64,7 +66,8 @@ def _bounds(works: Works, j: int) -> Iterator[_Bound]:
         yield _Bound(k, j, float(works.shortest_work[k]) + after, least)
         if np.isfinite(within):
             most = f"{name} begins at most {span(within)} after {before} ends"
-            yield _Bound(j, k, -within - float(works.longest_work[k]), most)
+            word = rules.given_by("gaps", k, j)
+            yield _Bound(j, k, -within - float(works.longest_work[k]), most, word)
     for k in rules.beginning_with(j):
         yield _Bound(k, j, 0.0, f"{tasks[j].id} begins together with {tasks[k].id}")
 
@@ -79,6 +82,7 @@ def _cycle_before(raised_by: dict[int, _Bound], task: int, count: int) -> list[_
     return cycle
 
 
-def _said(cycle: Sequence[_Bound]) -> str:
+def _said(cycle: Sequence[_Bound]) -> HeldBack:
     over = sum(bound.seconds for bound in cycle)
-    return f"{'; '.join(bound.said for bound in cycle)}: with the work {spans(0.0, over)[1]} too long"
+    said = f"{'; '.join(bound.said for bound in cycle)}: with the work {spans(0.0, over)[1]} too long"
+    return HeldBack(said, next(bound.word for bound in cycle if bound.word))

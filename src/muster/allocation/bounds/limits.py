@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.allocation.bounds.exclusions import Exclusions
 from muster.allocation.bounds.gap_cycles import gap_cycle
 from muster.model.bottleneck import bottleneck
 from muster.model.plan_model import ROUNDING, PlanModel
 from muster.model.problem import Bools, Floats, Problem
+from muster.model.rules.rule import HeldBack
 from muster.model.rules.times import spans
 
+_MOST_ASKED = 50_000  # pairs, up to which it is said why others cannot do tasks
 _MOST_ROUNDS = 50  # of narrowing bounds; they hold whenever it ends
-_MOST_NARROWED = 2_000_000  # pairs times robots (or tasks) up to which bounds are narrowed again for each of these
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +41,8 @@ class Limits:
         (n,) seconds until work on a task begins; inf: never.
     awaited
         for each task the prerequisite whose end is the latest of what it waits for; None: a robot is.
-    steps
-        the bounds by which pairs were excluded before, in this order, each with the pairs that were left until then.
+    exclusions
+        what excluded pairs, in these bounds and those before.
     """
 
     problem: Problem
@@ -51,7 +53,7 @@ class Limits:
     ready: Floats
     begin: Floats
     awaited: tuple[int | None, ...]
-    steps: tuple[Limits, ...] = ()
+    exclusions: Exclusions
 
     @property
     def rules(self) -> PlanModel:
@@ -127,63 +129,42 @@ class Limits:
     @cached_property
     def alone(self) -> Bools:
         """(m, n) the pairs that may be in an admissible plan, as far as rules tell that look at one robot."""
-        return self._kept_by(self.problem.allowed, about_one=True)
-
-    def possible(self) -> Bools:
-        """(m, n) the pairs that may be in an admissible plan."""
-        return self._kept_by(self._kept_by(self.usable, about_one=True), about_one=False)
-
-    def _kept_by(self, usable: Bools, *, about_one: bool) -> Bools:
-        for rule in self.problem.rules:
-            possible = rule.possible(self) if rule.about_one == about_one else None
+        usable = self.problem.allowed
+        for possible in self._possible_alone.values():
             usable = usable if possible is None else usable & possible
         return np.asarray(usable)
 
-    def that_excluded(self, i: int, j: int) -> Limits:
-        """These bounds with the times by which a pair was excluded; later ones may hold for the pairs left alone."""
-        return self._at_steps[int(self._survived[i, j])]
+    @cached_property
+    def _possible_alone(self) -> dict[str, Bools | None]:
+        """By word what the rules leave that look at one robot; None: all."""
+        return {rule.word: rule.possible(self) for rule in self.problem.rules if rule.about_one}
 
-    def rule_that_excluded(self, i: int, j: int) -> tuple[str, Limits] | None:
-        """The rule that excluded a pair, with the bounds and the pairs left at that time; None: none, as far as known.
+    @property
+    def possible_by_rule(self) -> list[Bools | None]:
+        """For each rule the pairs (m, n) that it leaves; None: all."""
+        alone = self._possible_alone
+        return [alone[rule.word] if rule.about_one else rule.possible(self) for rule in self.problem.rules]
 
-        Rules that look at one robot come first, as they did then.
+    def bare(self) -> Limits:
+        """The same without what is worked out from it."""
+        return replace(self)
+
+    def why_no_others(self, group: Collection[int], tasks: Sequence[int]) -> tuple[str, ...]:
+        """Why no robot outside a group does any of some tasks, each reason once; empty: one may, or pairs are too many.
+
+        Of what refuses a pair the rule and its words, of what excluded one, for which times differ, the rule alone.
         """
-        survived = int(self._survived[i, j]) if self.steps else 0
-        if survived >= len(self.steps) or not self.problem.allowed[i, j]:
-            return None
-        step = self.steps[survived]
-        for rule in sorted(self.problem.rules, key=lambda rule: not rule.about_one):
-            possible = rule.possible(step)
-            if possible is not None and not possible[i, j]:
-                return rule.word, step
-        return None
-
-    @cached_property
-    def _at_steps(self) -> tuple[Limits, ...]:
-        steps = (replace(one, usable=self.usable, steps=self.steps[:k]) for k, one in enumerate(self.steps))
-        return (*steps, self)
-
-    @cached_property
-    def _survived(self) -> npt.NDArray[np.int_]:
-        """(m, n) how many steps left a pair in."""
-        left = [step.usable for step in (*self.steps[1:], self)]
-        return np.asarray(np.sum(left, axis=0), dtype=np.int_)
-
-    def without(self, word: str, at: int) -> Limits | None:
-        """Bounds that hold whatever a rule says of one robot or task: by it other pairs may have been excluded.
-
-        None: to narrow them would take too long.
-        """
-        if not self.steps:
-            return self  # no pair was excluded before
-        if (word, at) not in self._freed and self.usable.size * max(self.usable.shape) <= _MOST_NARROWED:
-            free = replace(self.problem, freed=frozenset({(word, at)}), known=self.problem.measured)
-            self._freed[word, at] = _narrowed(_unnarrowed(free, self.usage, self.way, self.home))
-        return self._freed.get((word, at))
-
-    @cached_property
-    def _freed(self) -> dict[tuple[str, int], Limits]:
-        return {}
+        problem, found = self.problem, dict[str, None]()
+        outside = [i for i in range(len(problem.robots)) if i not in group]
+        pairs = itertools.product(outside, tasks) if len(outside) * len(tasks) <= _MOST_ASKED else ()
+        for i, j in pairs:
+            if (refused := problem.refusal(i, j)) is not None:
+                found[", ".join(refused)] = None
+            elif (cause := self.exclusions.cause(i, j)) is not None:
+                found[cause.rule.blamed(cause.limits, i, j)] = None
+            else:
+                return ()
+        return tuple(found)
 
     def must_also(self, j: int) -> list[int]:
         """The other tasks that are in every plan with a task: all that come before it or begin with it."""
@@ -198,7 +179,7 @@ class Limits:
         return self._needed[j]
 
     @cached_property
-    def held_back(self) -> dict[int, str]:
+    def held_back(self) -> dict[int, HeldBack]:
         """The tasks that no plan does as one before them may end only so long before, each with what is too late."""
         tasks = range(len(self.problem.tasks)) if self.is_timed else ()
         found = {j: _too_far(self, j) or gap_cycle(self, [j, *self.must_also(j)]) or _held_back(self, j) for j in tasks}
@@ -220,7 +201,7 @@ def narrowed(
     if not (timed or problem.has_timed_rules):
         none = np.empty((0, 0))
         limits = _unnarrowed(problem, usage, none, none)
-        return replace(limits, usable=limits.possible(), steps=(limits,))
+        return replace(limits, usable=limits.exclusions.narrowed(limits))
     found = [ways(problem, i) for i in range(len(problem.robots))]
     return _narrowed(_unnarrowed(problem, usage, np.array([way for way, _ in found]), np.array([h for _, h in found])))
 
@@ -228,25 +209,25 @@ def narrowed(
 def untimed(problem: Problem) -> Limits:
     """No bounds, for a problem in which nothing is timed; its pairs depend on their usage alone."""
     none, at_once = np.empty((0, 0)), np.zeros(len(problem.tasks))
-    return Limits(problem, none, none.astype(np.bool_), none, none, at_once, at_once, (None,) * len(problem.tasks))
+    awaited, nothing = (None,) * len(problem.tasks), Exclusions(problem)
+    return Limits(problem, none, none.astype(np.bool_), none, none, at_once, at_once, awaited, nothing)
 
 
 def _unnarrowed(problem: Problem, usage: Floats, way: Floats, home: Floats) -> Limits:
     at_once = np.zeros(len(problem.tasks))
-    return Limits(problem, usage, problem.allowed, way, home, at_once, at_once, (None,) * len(problem.tasks))
+    awaited, nothing = (None,) * len(problem.tasks), Exclusions(problem)
+    return Limits(problem, usage, problem.allowed, way, home, at_once, at_once, awaited, nothing)
 
 
 def _narrowed(limits: Limits) -> Limits:
-    steps: list[Limits] = []
     for _ in range(_MOST_ROUNDS):
         next_limits = _with_begins(limits)
-        steps.append(replace(next_limits))  # without what is worked out from it
-        usable = next_limits.possible()
+        usable = limits.exclusions.narrowed(next_limits)
         settled = bool((usable == limits.usable).all()) and bool((next_limits.begin == limits.begin).all())
         limits = replace(next_limits, usable=usable)
         if settled:
             break
-    return replace(limits, steps=tuple(steps))
+    return limits
 
 
 @dataclass(frozen=True)
@@ -296,25 +277,25 @@ def _sweep(limits: Limits, times: _Times) -> bool:
     return changed
 
 
-def _too_far(limits: Limits, j: int) -> str:
+def _too_far(limits: Limits, j: int) -> HeldBack | None:
     """That a task begins only so long after another, and the robot that must do both takes longer to come to it."""
     for k, _, within in limits.rules.gaps(j):
         way = _way(limits, k, j, limits.problem.allowed) if math.isfinite(within) else 0.0
         if way > within * (1 + ROUNDING) + ROUNDING:
             most, least = spans(within, way)
             before = limits.problem.tasks[k].id
-            return (
-                f"begins at most {most} after {before} ends, and the robot that does both takes {least} to come to it"
-            )
-    return ""
+            robot = f"the robot that does both takes {least} to come to it"
+            word = limits.rules.given_by("gaps", k, j)
+            return HeldBack(f"begins at most {most} after {before} ends, and {robot}", word)
+    return None
 
 
-def _held_back(limits: Limits, j: int) -> str:
+def _held_back(limits: Limits, j: int) -> HeldBack | None:
     """Which task before a task would be too late in every plan that does both, as it may not end too long before."""
     tasks = [j, *limits.must_also(j)]
     gaps = [(k, b, within) for k in tasks for b, _, within in limits.rules.gaps(k) if math.isfinite(within)]
     if not gaps:
-        return ""
+        return None
     times = _Times(limits.ready.copy(), limits.begin.copy(), list(limits.awaited))
     for _ in range(len(tasks) + 1):
         waiting = [
@@ -324,7 +305,8 @@ def _held_back(limits: Limits, j: int) -> str:
         ]
         if not any(waiting) and not _sweep(limits, times):
             break
-    return next((late for k in tasks if k != j and (late := _late(limits, times, k))), "")
+    late = next((late for k in tasks if k != j and (late := _late(limits, times, k))), "")
+    return HeldBack(late, limits.rules.given_by("gaps", gaps[0][1], gaps[0][0])) if late else None
 
 
 def _late(limits: Limits, times: _Times, k: int) -> str:

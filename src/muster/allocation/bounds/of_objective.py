@@ -8,6 +8,7 @@ rounding, some 1e-12 relative.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -30,8 +31,9 @@ _TREES, _FARTHEST = "spanning trees with multipliers", "the farthest task"
 _WEIGHED, _SHARE, _FAR = "a weighed share", "an even share", "the tasks far away"
 _LEAST_WAYS, _IN_TURN, _CRITICAL = "the least way to each task", "tasks in turn", "the critical path"
 _FORESTS, _PATHS = "forests of beginnings", "paths by the number of tasks behind"
+_MOST_CHOICES = 32  # of one of each set of alternatives, up to which bounds of each choice are compared
+_CHOSEN_AMONG = 1e5  # choices times tasks squared
 _NO_TASKS, _NOBODY = "no tasks", "a task that nobody can do"
-_ALTERNATIVES = "alternatives"
 WHY = {
     _TREES: f"starts and tasks joined by routes are spanning trees, and every task has two neighbours ({_HELD_KARP})",
     _FARTHEST: "some robot must get to it, do it and go to its end, by the shortest way (Dijkstra, Num. Math. 1, 1959)",
@@ -49,7 +51,6 @@ WHY = {
     " (Kelley and Walker, Eastern Joint Computer Conference, 1959)",
     _NO_TASKS: "there is nothing to do",
     _NOBODY: "no plan does it",
-    _ALTERNATIVES: "quick bounds are of plans that do all tasks, and these exclude each other",
 }
 """What each argument says, and whose it is."""
 
@@ -99,11 +100,13 @@ def best_bound(problem: Problem, due: Callable[[], bool] = never) -> Bound:
 def _best_bound(problem: Problem, due: Callable[[], bool]) -> Bound:
     if not problem.tasks:
         return Bound(0.0, (_NO_TASKS,))
-    if problem.model.parts.exclusive:
-        return Bound(0.0, (_ALTERNATIVES,))
+    choices = _choices(problem)
+    if choices:
+        bounds = [_best_bound(problem.part(range(len(problem.robots)), tasks), due) for tasks in choices]
+        return min(bounds, key=lambda bound: bound.value)
     least = least_usages(problem)
     usable = usable_pairs(problem, least)
-    if not usable.any(axis=0).all():
+    if not _of_each(problem, np.asarray(usable.any(axis=0), np.float64), best=np.max).all():
         return Bound(math.inf, (_NOBODY,))
     if problem.objective == "average":
         return _average(problem, usable, due)
@@ -112,6 +115,31 @@ def _best_bound(problem: Problem, due: Callable[[], bool]) -> Bound:
     if problem.objective == "lateness":
         return _lateness(problem, usable)
     return _usage(problem, usable, least, due)
+
+
+def _choices(problem: Problem) -> list[list[int]]:
+    """The tasks of plans that do one of each set of alternatives, where these are few; none: they are not.
+
+    What only plans with another alternative could do is in none of them.
+    """
+    sets, tasks = problem.model.alternatives, range(len(problem.tasks))
+    if not sets or math.prod(map(len, sets)) > min(_MOST_CHOICES, _CHOSEN_AMONG / len(tasks) ** 2):
+        return []
+    begun = {j for route in problem.fixed for j in route}
+    found = []
+    for chosen in itertools.product(*sets):
+        out = {j for alike in sets for j in alike}.difference(chosen)
+        if out.isdisjoint(begun) and out.isdisjoint(problem.closed(j for j in tasks if j not in out)):
+            found.append([j for j in tasks if j not in out])
+    return found
+
+
+def _of_each(problem: Problem, values: Floats, best: Callable[[Floats], float] = np.min) -> Floats:
+    """(k,) of the values of tasks (n,) those of tasks in whose place no other is done, then of each set the least."""
+    sets = problem.model.alternatives
+    sure = np.ones(len(values), np.bool_)
+    sure[[j for alike in sets for j in alike]] = False
+    return np.concatenate([values[sure], [best(values[alike]) for alike in sets]])
 
 
 def _usage(problem: Problem, usable: Bools, least: Floats, due: Callable[[], bool]) -> Bound:
@@ -125,12 +153,12 @@ def _usage(problem: Problem, usable: Bools, least: Floats, due: Callable[[], boo
     bounds, for the same k. The bound is the least over k.
     """
     members = [problem.model.least_members(j) for j in range(len(problem.tasks))]
-    alone = float(kth_least(np.where(usable, least, math.inf), members).max())
+    alone = float(_of_each(problem, kth_least(np.where(usable, least, math.inf), members)).max())
     copied = with_copies(problem, usable)
     if copied is None:
         return _by_tasks_alone(problem, np.where(usable, least, math.inf), members)
+    capacity = np.sort(problem.capacity[copied.usable.any(axis=1)])[::-1]
     problem, usable = copied.problem, copied.usable
-    capacity = np.sort(problem.capacity[usable.any(axis=1)])[::-1]
     shares = {} if problem.objective == "total" else _shares(problem, usable, due)
 
     def worth(totals: Floats) -> Floats:
@@ -161,8 +189,9 @@ def _shares(problem: Problem, usable: Bools, due: Callable[[], bool]) -> dict[st
 
 def _by_tasks_alone(problem: Problem, least: Floats, members: Sequence[int]) -> Bound:
     """Bound `total`, `max` and `total+max` by the task that takes most, for each robot that it needs at least."""
-    greatest = float(kth_least(least, members).max())
-    total = max(float(np.sort(column)[:k].sum()) for column, k in zip(least.T, members, strict=True))
+    greatest = float(_of_each(problem, kth_least(least, members)).max())
+    totals = np.array([np.sort(column)[:k].sum() for column, k in zip(least.T, members, strict=True)])
+    total = float(_of_each(problem, totals).max())
     return Bound({"total": total, "max": greatest, "total+max": total + greatest}[problem.objective], (_FARTHEST,))
 
 
@@ -197,16 +226,17 @@ def _average(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound:
     earlier than the k-th least, in (2) no earlier than any one of them, whose route may go through more tasks. (3)
     Without teams, see `least_arrivals` and `least_arrivals_on_paths`.
     """
-    n, m = usable.shape[1], int(usable.any(axis=1).sum())
+    n, m = problem.model.most_done, int(usable.any(axis=1).sum())
     open_ended = opened(problem)
     work = np.array([problem.work_usage(i) for i in range(len(problem.robots))])
     arrivals = np.where(usable, least_usages(open_ended) - work, math.inf)
-    alone = float(kth_least(arrivals, [problem.model.least_members(j) for j in range(len(problem.tasks))]).mean())
+    members = [problem.model.least_members(j) for j in range(len(problem.tasks))]
+    alone = float(_of_each(problem, kth_least(arrivals, members)).mean())
     ways = Ways.of(open_ended, usable, with_surplus=False)
-    steps = np.sort(ways.entering(after_work=True))[::-1]
+    steps = np.sort(_of_each(problem, ways.entering(after_work=True)))[::-1]
     in_turn = float((steps * (np.arange(n) // m + 1)).sum()) / n
     named = {_LEAST_WAYS: alone, _IN_TURN: in_turn}
-    if not problem.model.with_teams:
+    if not problem.model.with_teams and not problem.model.alternatives:
         named[_FORESTS] = least_arrivals(ways, m, due) / n
         named[_PATHS] = least_arrivals_on_paths(open_ended, usable, n * max(named.values()), due) / n
     best = max(named, key=lambda name: named[name])
@@ -225,7 +255,7 @@ def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound
     """
     timed, earliest = in_time(problem), EarliestTimes.of(problem, usable)
     with_return = problem.mission.rules.makespan_includes_return
-    critical = float((earliest.homes if with_return else earliest.ends).max())
+    critical = float(_of_each(problem, earliest.homes if with_return else earliest.ends).max())
     copied = with_copies(timed if with_return else opened(timed), usable)
     if copied is None or math.isinf(critical):
         return Bound(critical, (_CRITICAL,))
@@ -255,7 +285,7 @@ def _makespan(problem: Problem, usable: Bools, due: Callable[[], bool]) -> Bound
 def _lateness(problem: Problem, usable: Bools) -> Bound:
     """Bound the weighted sum of what tasks end after they are due: none ends earlier than `EarliestTimes` tells."""
     ends = EarliestTimes.of(problem, usable).ends
-    if not np.isfinite(ends).all():
-        return Bound(math.inf, (_CRITICAL,))
+    done = np.isfinite(ends)
     priority = np.array([task.priority for task in problem.tasks])
-    return Bound(float((priority * np.maximum(0.0, ends - problem.model.due)).sum()), (_CRITICAL,))
+    late = priority * np.maximum(0.0, np.where(done, ends, 0.0) - problem.model.due)
+    return Bound(float(_of_each(problem, np.where(done, late, math.inf)).sum()), (_CRITICAL,))

@@ -24,16 +24,18 @@ class Copied:
 def with_copies(problem: Problem, usable: Bools) -> Copied | None:
     """The problem with a copy of each task for each robot that it needs at least; itself where one robot does each.
 
-    None where teams may be larger than that and a way through a task can be shorter than the direct one: a robot more
-    could make a route cheaper there.
+    Alternatives are left out, as nothing is known of which one is done. None where there is nothing else, and where a
+    way through a task can be shorter than the direct one: then an alternative, or one more robot of a team that may be
+    larger than that, could make a route cheaper.
     """
     rules = problem.model
-    if not rules.with_teams:
+    if not rules.with_teams and not rules.alternatives:
         return Copied(problem, usable)
-    tasks = range(len(problem.tasks))
-    if len(problem.shortcuts()) and any(rules.sums(j) for j in tasks):
+    sure = sorted(set(range(len(problem.tasks))).difference(*rules.alternatives))
+    more = bool(rules.alternatives) or any(rules.sums(j) for j in sure)
+    if not sure or (more and len(problem.shortcuts())):
         return None
-    copies = np.repeat(np.arange(len(tasks)), [rules.least_members(j) for j in tasks])
+    copies = np.repeat(sure, [rules.least_members(j) for j in sure])
     return Copied(of_tasks(problem, copies.tolist()), usable[:, copies])
 
 

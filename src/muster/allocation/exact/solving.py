@@ -170,7 +170,7 @@ class _Solving:
         if not any(self._routes):
             return 0.0, 0.0
         least, why = 0.0, "no usage is negative"
-        if self._weight() == sum(self._weights):
+        if self._weight() == self._most_weight():
             quick = best_bound(self._problem)
             least, why = quick.value, quick.why
         if self._problem.objective == "average" and few_partings(self._problem) and self._alone():
@@ -188,6 +188,12 @@ class _Solving:
             slack = program.slack
         least, why = max((least, why), (min(bounds), "OR-Tools CP-SAT"))
         return sound_bound(least, self._value(), why), slack
+
+    def _most_weight(self) -> float:
+        """The weight of all tasks, of those in whose place others are done the greatest."""
+        sets = self._problem.model.alternatives
+        own = [[self._weights[j] for j in alike] for alike in sets]
+        return sum(self._weights) - sum(sum(weights) - max(weights) for weights in own)
 
     def _alone(self) -> bool:
         """Whether every task is done by one robot, and none is in a route already."""

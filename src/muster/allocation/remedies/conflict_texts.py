@@ -15,6 +15,8 @@ from muster.mission.texts.counting import counted
 from muster.model.rules.rule import ROUNDING
 from muster.model.rules.times import moments
 
+_MOST_REASONS = 2  # why others cannot do the tasks
+
 
 def in_mission_order(items: Sequence[Robot] | Sequence[Task], names: Sequence[str]) -> tuple[str, ...]:
     """The names in the order of the mission."""
@@ -26,12 +28,14 @@ def conflict_text(bounds: UsageBounds, robots: list[int], tasks: list[int]) -> s
     """Why robots, all that can do any of the tasks, cannot do them all."""
     problem = bounds.problem
     names = ", ".join(in_mission_order(problem.mission.robots, [problem.robots[i].id for i in robots]))
-    return (
+    said = (
         _too_much_together(bounds, robots, tasks, names)
         or _tied(bounds, tasks)
         or _too_late_for_one(bounds, robots, tasks)
         or _however(bounds, robots, tasks, names)
     )
+    others = bounds.limits.why_no_others(robots, tasks)
+    return f"{said} (others: {'; '.join(others)})" if 0 < len(others) <= _MOST_REASONS else said
 
 
 def _too_much_together(bounds: UsageBounds, robots: list[int], tasks: list[int], names: str) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,12 +18,14 @@ from muster.allocation.bounds.subset_times import tied_pairs
 from muster.allocation.bounds.usage_bounds import UsageBounds
 from muster.allocation.bounds.work_shortfall import Shortfall, shortfalls
 from muster.allocation.remedies.conflict_texts import conflict_text, in_mission_order
+from muster.allocation.remedies.mission_remedies import MissionRemedy, mission_remedies
 from muster.allocation.search.witness_plans import Judge, attempt, can_do, does_all, least_seconds
 from muster.mission.system.clock import Clock, SystemClock
 from muster.model.problem import Problem
 
 _LEFT_OUT_TRIED = 5
 _OVERTIME_S = 0.2
+_LEAST_SEARCH_S = 0.05  # for a plan with a remedy
 _MOST_PAIRS = 2_000_000  # of robot and task, up to which sums of work are taken without a time limit
 _BEFORE_PROOFS = 1  # seed of the last search before proofs are tried
 
@@ -50,12 +52,13 @@ class Together:
     """Whether one plan can do all tasks that are possible by themselves: it can if there is neither conflict nor doubt.
 
     `unknown` tells that no plan of them all was found, and none was proven impossible. `shortfalls` are the proofs that
-    their work is too much for the robots before any travel.
+    their work is too much for the robots; `remedies` are changes of the mission that lift all of these.
     """
 
     conflict: Conflict | None = None
     unknown: bool = False
     shortfalls: tuple[Shortfall, ...] = ()
+    remedies: tuple[MissionRemedy, ...] = ()
 
     @property
     def proven(self) -> bool:
@@ -78,9 +81,11 @@ def together(problem: Problem, judge: Judge, *, time_limit: float = 2.0, clock: 
         return Together(unknown=True)
     tasks = _possible(problem)
     sure, bounds = _in_every_plan(problem, tasks), UsageBounds(problem)
-    if short := shortfalls(problem, sure, bounds):
+    if short := shortfalls(problem, tasks, bounds):
+        lifted = _lifted(problem, tasks, short, judge, left, clock)
         proven = _proven(bounds, sure, (), left)
-        return Together(None if proven is None else _minimal(bounds, proven, judge, left, clock), shortfalls=short)
+        conflict = None if proven is None else _minimal(bounds, proven, judge, left, clock)
+        return Together(conflict, shortfalls=short, remedies=lifted)
     for seed in itertools.count():
         share = left() if seed > _BEFORE_PROOFS else left() / 3
         routes = attempt(problem, tasks, seed=seed, time_limit=share, clock=clock)
@@ -95,11 +100,33 @@ def together(problem: Problem, judge: Judge, *, time_limit: float = 2.0, clock: 
     return Together(unknown=True)
 
 
+def _lifted(
+    problem: Problem,
+    tasks: Sequence[int],
+    short: Sequence[Shortfall],
+    judge: Judge,
+    left: Callable[[], float],
+    clock: Clock,
+) -> tuple[MissionRemedy, ...]:
+    """The remedies of a mission that are found in time, and in half of what is left of it maybe a plan with each."""
+    found = list(mission_remedies(problem, tasks, short, lambda: left() == 0.0))
+    until, remedies = left() / 2, []
+    for number, one in enumerate(found):
+        share = max(0.0, left() - until) / (len(found) - number)
+        does = False
+        if share > max(_LEAST_SEARCH_S, least_seconds(one.problem)):
+            other = Problem.compile(one.problem.mission, problem.objective, problem.ignored)
+            routes = attempt(other, tasks, time_limit=share, clock=clock)
+            does = does_all(other, routes, _one_of_each(other, tasks, routes), judge)
+        remedies.append(replace(one.remedy, plan_found=does))
+    return tuple(remedies)
+
+
 def without_search(problem: Problem) -> Together:
     """Return what sums of work alone prove, at once; in a very large problem that is not looked at."""
     if len(problem.robots) * len(problem.tasks) > _MOST_PAIRS:
         return Together(unknown=True)
-    short = shortfalls(problem, _in_every_plan(problem, _possible(problem)))
+    short = shortfalls(problem, _possible(problem))
     return Together(unknown=not short, shortfalls=short)
 
 

@@ -133,9 +133,8 @@ def _print_checked(mission: Mission, found: Possible, errors: int) -> None:
     wrong = [counted(errors, "error")] if errors else []
     wrong += [f"{len(lost)} of {counted(len(mission.tasks), 'task')} can never be done"] if lost else []
     click.echo(f"{mission.name}: {robots}, {tasks}{stations}; {', '.join(wrong) or 'no errors'}")
-    for short in found.together.shortfalls:
-        for line in shortfall_lines(short):
-            click.echo(line)
+    for line in shortfall_lines(found.together.shortfalls, found.together.remedies):
+        click.echo(line)
     if lost:
         print_impossible(lost)
         if opened := sorted({event.door_opens for event in mission.events if event.door_opens}):

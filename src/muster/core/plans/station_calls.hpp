@@ -94,6 +94,7 @@ class StationCalls {
   bool arrive(int robot, Labels& labels, int parent, int from, int to, double rest_after);
   int call(int robot, Labels& labels, int parent, int from, int station);
   void call_again(int robot, Labels& labels, int to, double beyond);
+  void refill_after_unloading(int robot, Labels& labels, int to, double needed);
   bool changes(int robot, const Labels& labels, const Label& label, const Station& station) const;
   void add(Labels& labels, Label&& label);
   double put_down(const Labels& labels, const Label& label, int meter) const;

@@ -39,6 +39,7 @@ bool StationCalls::cross(int robot, Labels& labels, int from, int to, double res
   const double beyond = rest_before - problem_.travel_usage(robot, from, to);
   places_ = current_;
   if (has_few_) call_again(robot, labels, to, beyond);
+  if (has_few_) refill_after_unloading(robot, labels, to, needed);
   settle();
   for (int depth = has_few_ ? 2 : 1; depth <= problem_.stations(); ++depth) {
     double most = -kNever;
@@ -75,6 +76,24 @@ void StationCalls::call_again(int robot, Labels& labels, int to, double beyond) 
   if (deeper_.size() > kMostLabels * 4) deeper_.resize(kMostLabels * 4);
   current_ = deeper_;
   places_.insert(places_.end(), current_.begin(), current_.end());
+}
+
+// A robot may refill, unload and refill again, where it has not the energy that it needs at the stop after two calls:
+// other ways to the stop may cost more.
+void StationCalls::refill_after_unloading(int robot, Labels& labels, int to, double needed) {
+  if (!unloads_ || problem_.energy(robot) == kNever) return;
+  for (const int parent : current_) {
+    const int last = labels.all[parent].station, before = labels.all[labels.all[parent].parent].station;
+    if (problem_.station(last).gives_energy() || !problem_.station(before).gives_energy()) continue;
+    const double way = problem_.travel_usage(robot, problem_.place_of_station(last), to);
+    const double work = to < problem_.tasks() ? work_usage(robot, to, works_) : 0.0;
+    if (labels.all[parent].frontier.last().energy >= way + work + needed) continue;
+    for (int station = 0; station < problem_.stations(); ++station) {
+      if (!problem_.station(station).gives_energy() || !serves(robot, station)) continue;
+      const int called = call(robot, labels, parent, problem_.place_of_station(last), station);
+      if (called >= 0) places_.push_back(called);
+    }
+  }
 }
 
 // Whether a robot with this label cannot do the rest of the route without a call. If it can, notes by how much the rest

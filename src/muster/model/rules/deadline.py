@@ -27,6 +27,9 @@ class LaterDeadline(Later):
     def short(self) -> str:
         return f"a deadline {longer(self.seconds)} later"
 
+    def of_several(self, whose: str, seconds: float) -> str:
+        return f"deadlines of {whose} {longer(seconds)} later"
+
     @property
     def line(self) -> str:
         return f"{self.short}, at {span(self.until_s or 0.0)}: {known_least(self.until_s, self.at_least_s)}"
@@ -41,6 +44,7 @@ class Deadline(Latest):
     word: ClassVar[str] = "deadline"
     asked: ClassVar[Mapping[str, str]] = {"ends_by": "deadline"}
     key = "deadline"
+    limits = ("ends_by", False)
     lifts = LaterDeadline
     resource = ("time", "time before the last deadline")
 
@@ -59,7 +63,7 @@ class Deadline(Latest):
         return np.asarray(limits.pair_end <= limits.rules.ends_by * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        return self._by_least_times(outlook.limits, i, j, bound=j, limit="deadline, which is")
+        return self._by_least_times(outlook.limits, i, j, limit="deadline, which is")
 
     def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
         return self.late(problem, j, 0.0, float(limits.pair_end[i, j]))
@@ -72,7 +76,8 @@ class Deadline(Latest):
         if math.isinf(end) or end <= deadline * (1 + ROUNDING):
             return None
         ends, until = moments(problem, end, deadline)
-        return f"ends at {ends} at the earliest, its deadline is {until}"
+        own = problem.model.given_by("ends_by", j) in ("", self.word)
+        return f"ends at {ends} at the earliest, its {'deadline' if own else 'latest end'} is {until}"
 
     def broken_at(self, tried: Tried) -> str:
         own = self.late(tried.problem, tried.j, 0.0, min(end for _, _, end in tried.stops))

@@ -29,6 +29,10 @@ class Later(Change):
     def plain(self) -> Mapping[str, float | None]:
         return {self.limit_key: self.limit_s, "until_s": self.until_s, "at_least_s": self.at_least_s}
 
+    def of_several(self, whose: str, seconds: float) -> str:
+        """The change of several limits of the sort, each by so much, in words; `whose` are robots, or counted tasks."""
+        raise NotImplementedError
+
     @property
     def seconds(self) -> float:
         return math.inf if self.until_s is None else self.until_s - self.limit_s
@@ -44,10 +48,15 @@ class Latest(Rule):
 
     lifted_late = True
     lifts: ClassVar[type[Later]]
+    limits: ClassVar[tuple[str, bool]]  # the primitive, and whether it is of a robot and not of a task
 
     def latest(self, problem: Question, i: int, j: int) -> float:
         """The limit for robot i and task j; inf: there is none."""
         raise NotImplementedError
+
+    def blamed(self, limits: Limits, i: int, j: int) -> str:
+        primitive, of_robot = self.limits
+        return limits.rules.given_by(primitive, i if of_robot else j) or self.word
 
     def unlimited(self, problem: Question, i: int, j: int) -> Later | None:
         limit = self.latest(problem, i, j)
@@ -57,12 +66,13 @@ class Latest(Rule):
         """That the limit is before what robot i and task j come to at the least; None: it is not."""
         raise NotImplementedError
 
-    def _by_least_times(self, limits: Limits, i: int, j: int, *, bound: int, limit: str) -> str | None:
-        """The same, by times that hold whatever the rule says of whom it is `bound` to; `limit` is it in words."""
-        problem = limits.problem  # not that of what is free, which has no such limit
+    def _by_least_times(self, limits: Limits, i: int, j: int, limit: str) -> str | None:
+        """The same, by times that hold whatever the rule says of the robot or of the task; `limit` is it in words."""
+        problem = limits.problem
         if not limits.is_timed or self._excludes(problem, limits, i, j) is None:
             return None
-        free = limits.without(self.word, bound)
+        _, of_robot = self.limits
+        free = limits.exclusions.before(self.word, robot=i) if of_robot else limits.exclusions.before(self.word, task=j)
         late = None if free is None else self._excludes(problem, free, i, j)
         (until,) = moments(problem, self.latest(problem, i, j))
         return late or f"what it waits for is too late for its {limit} {until}"

@@ -49,9 +49,13 @@ class Prerequisite(Rule):
         possible[:, list(limits.held_back)] = False
         return possible
 
+    def blamed(self, limits: Limits, i: int, j: int) -> str:
+        return limits.held_back[j].word
+
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         if outlook.lost_before not in problem.tasks[j].prerequisites:
-            return outlook.limits.held_back.get(j)
+            held = outlook.limits.held_back.get(j)
+            return None if held is None else held.said
         return f"{outlook.lost_before} comes before it and can never be done"
 
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:

@@ -76,6 +76,20 @@ class Question(Protocol):
     def back(self, i: int, end_s: float, j: int) -> float: ...
 
 
+@dataclass(frozen=True)
+class HeldBack:
+    """That no plan does a task, by how long it may be between tasks: in words, and the rule that gave the bound."""
+
+    said: str
+    word: str
+
+
+class Exclusions(Protocol):
+    """What excluded pairs; see `muster.allocation.bounds.exclusions`."""
+
+    def before(self, word: str, *, robot: int | None = None, task: int | None = None) -> Limits | None: ...
+
+
 class Limits(Protocol):
     """Lower bounds of usage and times, over all admissible plans; see `muster.allocation.bounds.limits`."""
 
@@ -109,11 +123,12 @@ class Limits(Protocol):
     @property
     def over(self) -> Floats: ...
     @property
-    def held_back(self) -> dict[int, str]: ...
+    def held_back(self) -> dict[int, HeldBack]: ...
 
     def must_also(self, j: int) -> list[int]: ...
 
-    def without(self, word: str, at: int) -> Limits | None: ...
+    @property
+    def exclusions(self) -> Exclusions: ...
 
 
 @dataclass(frozen=True)
@@ -355,6 +370,10 @@ class Rule:
         """(m, n) the pairs that may be in an admissible plan, by lower bounds of usage and times; None: all."""
         return None
 
+    def blamed(self, limits: Limits, i: int, j: int) -> str:
+        """The word of the rule by which it excludes a pair: of the one that gave the bound."""
+        return self.word
+
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
         """Why robot i can do task j in no admissible plan; None if it may."""
         return self.refusal(problem, i, j)
@@ -391,6 +410,10 @@ class Rule:
     def over_late(self, problem: Question, i: int, over: float) -> str | None:
         """That the route of robot i is over too late that is over at this time at the earliest; None: it is not."""
         return None
+
+    def trait(self, robot: Robot) -> str:
+        """What a robot has by which the rule lets it do tasks, in words; empty: nothing."""
+        return ""
 
     def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
         """A task without what binds it no more once some, by id, are done or begun by so many robots each."""

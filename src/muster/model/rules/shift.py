@@ -33,6 +33,9 @@ class LongerShift(Later):
     def short(self) -> str:
         return f"a shift until {self.said}"
 
+    def of_several(self, whose: str, seconds: float) -> str:
+        return f"shifts of {whose} {longer(seconds)} longer"
+
     @property
     def line(self) -> str:
         return f"{self.short}, {longer(self.seconds)} longer: {known_least(self.until_s, self.at_least_s)}"
@@ -47,6 +50,7 @@ class Shift(Latest):
     word: ClassVar[str] = "shift"
     asked: ClassVar[Mapping[str, str]] = {"over_by": "shift", "spans": "rests"}
     key = "shift"
+    limits = ("over_by", True)
     lifts = LongerShift
     resource = ("shift", "shift")
 
@@ -71,7 +75,7 @@ class Shift(Latest):
         return np.asarray(limits.over <= until * (1 + ROUNDING))
 
     def never(self, problem: Question, i: int, j: int, outlook: Outlook) -> str | None:
-        return self._by_least_times(outlook.limits, i, j, bound=i, limit="shift, which ends at")
+        return self._by_least_times(outlook.limits, i, j, limit="shift, which ends at")
 
     def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
         return self.over_late(problem, i, float(limits.over[i, j]))
@@ -84,7 +88,10 @@ class Shift(Latest):
         if math.isinf(over) or over <= until * (1 + ROUNDING):
             return None
         back, ends = moments(problem, over, until)
-        return f"its route would end at {back} at the earliest, its shift ends at {ends}"
+        own = problem.model.given_by("over_by", i) in ("", self.word)
+        return (
+            f"its route would end at {back} at the earliest, {'its shift ends at' if own else 'it is to end by'} {ends}"
+        )
 
     def broken_at(self, tried: Tried) -> str:
         own = self.over_late(tried.problem, tried.i, tried.over)

@@ -41,6 +41,9 @@ class Skill(Rule):
         lacking = _lacking(problem.robots[i], problem.tasks[j])
         return f"lacks {listed(lacking)}" if lacking else None
 
+    def trait(self, robot: Robot) -> str:
+        return listed(robot.skills)
+
     def change(self, problem: Question, robot: Robot, task: Task) -> MissingSkills | None:
         lacking = _lacking(robot, task)
         return MissingSkills(lacking) if lacking else None

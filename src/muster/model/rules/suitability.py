@@ -50,6 +50,9 @@ class Suitability(Rule):
             return None
         return f"type {low.robot_type} scores {low.score:g} for {low.task_type}, below {low.needed:g}"
 
+    def trait(self, robot: Robot) -> str:
+        return f"type {robot.type}" if robot.type else ""
+
     def change(self, problem: Question, robot: Robot, task: Task) -> LowScore | None:
         table, least = problem.mission.suitability, problem.mission.rules.min_suitability
         if table is None:

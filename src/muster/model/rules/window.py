@@ -27,6 +27,9 @@ class LongerWindow(Later):
     def short(self) -> str:
         return f"a window {longer(self.seconds)} longer"
 
+    def of_several(self, whose: str, seconds: float) -> str:
+        return f"windows of {whose} {longer(seconds)} longer"
+
     @property
     def line(self) -> str:
         return f"{self.short}, until {span(self.until_s or 0.0)}: {known_least(self.until_s, self.at_least_s)}"
@@ -41,6 +44,7 @@ class Window(Latest):
     word: ClassVar[str] = "window"
     asked: ClassVar[Mapping[str, str]] = {"openings": "window"}
     key = "window"
+    limits = ("openings", False)
     lifts = LongerWindow
 
     def asks(self, problem: Question) -> Mapping[str, str | None]:
@@ -59,7 +63,7 @@ class Window(Latest):
         if not limits.is_timed or math.isfinite(limits.pair_begin[i, j]):
             return None
         own = _closed(problem, j, "arrives at", float(limits.arrival[i, j]))
-        waits = self._by_least_times(limits, i, j, bound=j, limit=f"{_which(problem, j)}, which closes at")
+        waits = self._by_least_times(limits, i, j, limit=f"{_which(problem, j)}, which closes at")
         return own or waits or _never_together(problem, j)
 
     def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
@@ -100,6 +104,8 @@ def _closed(problem: Question, j: int, how: str, ready: float) -> str | None:
 
 
 def _which(problem: Question, j: int) -> str:
+    if problem.model.given_by("openings", j) not in ("", Window.word):
+        return "last time to begin"
     return "window" if len(problem.model.openings[j]) == 1 else "last window"
 
 

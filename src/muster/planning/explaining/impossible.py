@@ -11,6 +11,7 @@ import numpy as np
 from muster.allocation.bounds.feasibility import impossible
 from muster.allocation.bounds.work_shortfall import Shortfall
 from muster.allocation.remedies.conflicts import Conflict, Together, together, without_search
+from muster.allocation.remedies.mission_remedies import MissionRemedy
 from muster.allocation.stop import Stop
 from muster.mission.model import Mission, Station
 from muster.mission.plan import Reason, Unassigned
@@ -56,6 +57,7 @@ class Possible:
             "conflict": None if conflict is None else asdict(conflict),
             "unknown": self.together.unknown,
             "shortfalls": [short.as_dict() for short in self.together.shortfalls],
+            "remedies": [asdict(remedy) for remedy in self.together.remedies],
             "unseen": [asdict(item) for item in self.unseen],
             "blocked": [asdict(item) for item in self.blocked],
             "cut_off": [asdict(item) for item in self.cut_off],
@@ -72,7 +74,9 @@ class Possible:
         blocked = tuple(BlockedWay(**{**item, "robots": tuple(item["robots"])}) for item in data.get("blocked", ()))
         cut_off = tuple(CutOff(**item) for item in data.get("cut_off", ()))
         short = tuple(map(Shortfall.from_dict, data.get("shortfalls", ())))
-        all_others = Together(_conflict(data["conflict"]), data["unknown"], short)
+        named = ({**item, "robots": tuple(item["robots"])} for item in data.get("remedies", ()))
+        remedies = tuple(MissionRemedy(**item) for item in named)
+        all_others = Together(_conflict(data["conflict"]), data["unknown"], short, remedies)
         return cls(tuple(lost), all_others, unseen, blocked, cut_off)
 
 

@@ -6,15 +6,18 @@ from collections.abc import Sequence
 
 from muster.allocation.bounds.work_shortfall import Shortfall
 from muster.allocation.reasons.explanations import Alternative, without_bid
+from muster.allocation.remedies.mission_remedies import MissionRemedy
 from muster.allocation.remedies.remedies import smallest
 from muster.allocation.remedies.remedy import Remedy
 from muster.mission.auction_book import Award, Book
 from muster.mission.goods import shown_amounts
 from muster.model.energy import levels_in_words
 from muster.model.problem import Problem
+from muster.model.rules.times import span
 from muster.planning.explaining.explanations import OneTask
 from muster.verification import Stop
 
+_LEAST_CHANGES = "least changes of the mission with which nothing is proven to be short"
 _MOST_SILENT = 10  # robots that could not bid, and are named
 
 
@@ -33,9 +36,26 @@ def place(found: OneTask) -> list[str]:
     return said
 
 
-def shortfall_lines(found: Shortfall) -> list[str]:
-    """That work is too much for robots, and what is least to add."""
-    return [f"proven: {found.detail}", f"  {found.least}"]
+def shortfall_lines(found: Sequence[Shortfall], remedies: Sequence[MissionRemedy] = ()) -> list[str]:
+    """That work is too much for robots, what is least to add, and what lifts all that is proven."""
+    lines = [line for short in found for line in (f"proven: {short.detail}", *short.more)]
+    if not remedies:
+        return lines
+    changes = [f"  {_of_mission(remedy)}" for remedy in remedies]
+    unknown = "whether a plan then does all tasks is not known" + (", where none was found" if _any(remedies) else "")
+    all_found = all(remedy.plan_found for remedy in remedies)
+    return [*lines, f"{_LEAST_CHANGES}:", *changes, *(() if all_found else (f"  {unknown}",))]
+
+
+def _any(remedies: Sequence[MissionRemedy]) -> bool:
+    return any(remedy.plan_found for remedy in remedies)
+
+
+def _of_mission(remedy: MissionRemedy) -> str:
+    """A change of a mission, whether less is too little, and whether a plan is known."""
+    few = "; fewer are not enough (proven)" if len(remedy.robots) > 1 else ""
+    less = f"; less than {span(remedy.at_least_s)} is not enough (proven)" if remedy.at_least_s else ""
+    return f"{remedy.said}{few}{less}{': a plan was found' if remedy.plan_found else ''}"
 
 
 def _levels(found: OneTask, stop: Stop) -> list[str]:

@@ -81,7 +81,7 @@ def tables_on_left_out(found: LeftOut) -> list[Part]:
     shown = rows[:_MOST_ROWS]
     parts: list[Part] = [
         *ignored(found.problem),
-        *(line for short in found.shortfalls for line in shortfall_lines(short)),
+        *shortfall_lines(found.shortfalls),
         Table(title, ("task", "robot", "reason", "detail"), shown),
         _smallest(found.problem, changes),
     ]
