@@ -185,7 +185,7 @@ class TimedPlaces(TimedTeams):
         if rules.is_for_team(j):
             return self._word_of("seats", "sums")
         if len(self.problem.with_partner(j)) > 2:
-            return self._word_of(*_TIES, "taken_on_by")
+            return self._word_of_whole(j)
         return ""
 
     def _is_by_itself(self, word: str, i: int, j: int, left: list[tuple[Place, core.Inspection]]) -> bool:
