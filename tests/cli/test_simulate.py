@@ -159,6 +159,15 @@ def test_films_that_cannot_be(muster, tmp_path, monkeypatch, arguments, message)
     assert list(tmp_path.iterdir()) == []
 
 
+def test_an_alternative_that_is_not_done_is_no_error(muster, tmp_path):
+    gates = tmp_path / "gates.yaml"
+    tasks = "[{id: a, position: [1, 0]}, {id: b, position: [9, 0], either_or: a}]"
+    gates.write_text(f"schema: muster/1\nrobots: [{{id: r_0, position: [0, 0]}}]\ntasks: {tasks}\n", encoding="utf-8")
+    code, out, _ = muster("simulate", gates, "--iterations", "20", "--require-complete", "--format", "json")
+    assert code == 0
+    assert json.loads(out)["tasks_lost"] == [{"task": "b", "reason": "either-or: a is done in its place"}]
+
+
 def test_lost_tasks_can_be_an_error(muster, eventful):
     assert muster("simulate", eventful, "--iterations", "100", "--require-complete")[0] == 3
 

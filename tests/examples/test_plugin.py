@@ -2,9 +2,6 @@
 
 import asyncio
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -17,32 +14,6 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "plugin"
 MISSION = EXAMPLE / "mission.yaml"
 ROUTES = {"r_0": ["statue"], "r_1": ["gate"]}
 pytestmark = pytest.mark.xdist_group("plugin")  # the package is installed once
-
-
-@pytest.fixture(scope="module")
-def installed(tmp_path_factory):
-    """The folder in which the package is installed, without a network."""
-    folder = tmp_path_factory.mktemp("site")
-    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "--no-index"]
-    subprocess.run([*pip, "--target", str(folder), str(EXAMPLE)], check=True)
-    return folder
-
-
-@pytest.fixture(scope="module")
-def run(installed):
-    """Runs Python with the package; the process that ended."""
-
-    def run(*arguments):
-        command = [sys.executable, *map(str, arguments)]
-        environment = {**os.environ, "PYTHONPATH": str(installed)}
-        return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
-
-    return run
-
-
-@pytest.fixture(scope="module")
-def muster(run):
-    return lambda *arguments: run("-m", "muster.cli", *arguments)
 
 
 def test_the_package_is_about_forty_lines():

@@ -2,7 +2,6 @@
 
 import asyncio
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -19,32 +18,6 @@ MISSION = EXAMPLE / "mission.yaml"
 TEXT = MISSION.read_text(encoding="utf-8")
 KEEPING = ("search", "greedy", "genetic", "auction")
 pytestmark = pytest.mark.xdist_group("rule")  # the package is installed once
-
-
-@pytest.fixture(scope="module")
-def installed(tmp_path_factory):
-    """The folder in which the package is installed, without a network."""
-    folder = tmp_path_factory.mktemp("site")
-    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "--no-index"]
-    subprocess.run([*pip, "--target", str(folder), str(EXAMPLE)], check=True)
-    return folder
-
-
-@pytest.fixture(scope="module")
-def run(installed):
-    """Runs Python with the package; the process that ended."""
-
-    def run(*arguments):
-        command = [sys.executable, *map(str, arguments)]
-        environment = {**os.environ, "PYTHONPATH": str(installed)}
-        return subprocess.run(command, capture_output=True, text=True, check=False, env=environment, cwd=ROOT)
-
-    return run
-
-
-@pytest.fixture(scope="module")
-def muster(run):
-    return lambda *arguments: run("-m", "muster.cli", *arguments)
 
 
 def written(folder, text):

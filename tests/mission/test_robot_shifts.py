@@ -1,25 +1,11 @@
-"""What is left of a robot's shifts at a time, and from when on it works so long."""
-
-import math
+"""What is left of a robot's shifts at a time."""
 
 import pytest
 
 from muster import Robot
 
 THREE = Robot(id="r", position=(0, 0), shifts_s=((0, 10), (20, 30), (40, None)))
-
-
-@pytest.mark.parametrize(
-    ("now", "seconds", "begins"),
-    [(0, 10, 0), (1, 10, 20), (1, 11, 40), (1, 9, 1), (12, 5, 20), (28, 2, 28), (29, 2, 40), (99, 50, 99)],
-)
-def test_a_robot_sets_out_where_a_shift_lasts(now, seconds, begins):
-    assert THREE.set_out(now, seconds) == begins
-    assert Robot(id="r", position=(0, 0)).set_out(now, seconds) == now
-
-
-def test_no_shift_is_left():
-    assert THREE.until_time(45).set_out(44, 2) == math.inf
+LAST = Robot(id="r", position=(0, 0), shifts_s=((0, 10), (40, 50)))
 
 
 @pytest.mark.parametrize(
@@ -39,11 +25,14 @@ def test_what_is_left_from_a_time_on(now, shifts):
 def test_the_last_shift_is_one_like_any_other():
     last = THREE.from_time(41)
     assert (last.shifts_s, last.available_from_s, last.available_until_s) == ((), 41, None)
-    gone = THREE.until_time(50).from_time(60)
+    gone = LAST.from_time(60)
     assert (gone.shifts_s, gone.available_from_s, gone.available_until_s) == ((), 60, 60)
 
 
-def test_what_is_left_until_a_time():
-    assert THREE.until_time(25).shifts_s == ((0, 10), (20, 25))
-    assert THREE.until_time(20).available_until_s == 10
-    assert Robot(id="r", position=(0, 0), available_from_s=3).until_time(9).available_until_s == 9
+def test_who_is_busy_is_so_in_no_break():
+    """At work from 5 to 25, and then in what is left of the second shift."""
+    assert THREE.busy(5, 25).shifts_s == ((5, 30), (40, None))
+    assert THREE.busy(12, 15).shifts_s == ((12, 15), (20, 30), (40, None))
+    assert THREE.busy(25, 25) == THREE.from_time(25)
+    plain = Robot(id="r", position=(0, 0), available_until_s=9)
+    assert (plain.busy(12, 15).available_from_s, plain.busy(12, 15).available_until_s) == (12, 12)

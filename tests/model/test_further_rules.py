@@ -44,6 +44,18 @@ def test_of_two_alternatives_the_nearer_one_is_done(allocator):
     assert verify(mission, plan).valid
 
 
+@pytest.mark.parametrize("allocator", SOME)
+def test_alternatives_are_kept_apart_whichever_robots_would_do_them(allocator):
+    """What a task costs another robot is as before when its alternative is placed."""
+    robots = tuple(Robot(id=f"r_{x}", position=(x, 0)) for x in (0, 9))
+    tasks = (Task(id="a", position=(0, 1), either_or=("b",)), Task(id="b", position=(9, 1), due_s=50))
+    for objective in ("lateness", "total", "makespan"):
+        mission = Mission(rules=Rules(objective=objective), robots=robots, tasks=tasks)
+        plan = muster.solve(mission, allocator, **SOME[allocator])
+        assert len(done(plan)) == 1
+        assert plan.complete
+
+
 def test_the_alternative_that_weighs_more_is_done():
     mission = alternatives()
     heavy = Task(id="far", position=(9, 0), either_or=("near",), priority=2)

@@ -29,6 +29,7 @@ MISSION = Mission(
 )
 TASKS = {task.id: task for task in MISSION.tasks}
 R, S = MISSION.robots
+LIMITS = {name: UnderWay(MISSION, ()).limits(robot) for name, robot in (("R", R), ("S", S))}
 
 
 def model(*ignored, without=()):
@@ -54,12 +55,12 @@ def test_tasks_that_are_gone_have_ended():
 def test_why_a_task_can_never_begin():
     some = model()
     assert list(some.missed("d", 60, {})) == []
-    assert list(some.missed("d", 61, {})) == [Missed("window", "window: closed at 60 s")]
-    assert list(some.missed("a", 71, {})) == [Missed("deadline", "deadline: 70 s is over")]
+    assert list(some.missed("d", 61, {})) == [Missed("openings", "window: closed at 60 s")]
+    assert list(some.missed("a", 71, {})) == [Missed("ends_by", "deadline: 70 s is over")]
     words = "prerequisite: not begun within 8 s after a, ended at 4 s"
     assert list(some.missed("b", 12, {"a": 4})) == []
-    assert list(some.missed("b", 13, {"a": 4})) == [Missed("prerequisite", words)]
-    next_one = Missed("window", "window: closed at 20 s; the next is open from 50 s on", 50)
+    assert list(some.missed("b", 13, {"a": 4})) == [Missed("gaps", words)]
+    next_one = Missed("openings", "window: closed at 20 s; the next is open from 50 s on", 50)
     assert [some.missed_opening("a", meant, now) for meant, now in ((15, 19), (15, 21), (55, 60))] == [
         None,
         next_one,
@@ -69,11 +70,11 @@ def test_why_a_task_can_never_begin():
 
 def test_why_a_robot_comes_too_late():
     some = model()
-    assert some.too_late("d", S, 61, 1, 0) == "window: would arrive at 61.0 s, after it has closed"
-    assert some.too_late("a", S, 69, 2, 0) == "deadline: would end at 71.0 s, after 70 s"
-    assert some.too_late("b", R, 80, 2, 9) == "shift: would be back at 91.0 s, after 90 s"
-    assert some.too_late("b", S, 80, 2, 9) == some.too_late("b", R, 80, 2, 8) == ""
-    assert model("shift").too_late("b", R, 80, 2, 9) == ""
+    assert some.too_late("d", LIMITS["S"], 61, 1, 0) == "window: would arrive at 61.0 s, after it has closed"
+    assert some.too_late("a", LIMITS["S"], 69, 2, 0) == "deadline: would end at 71.0 s, after 70 s"
+    assert some.too_late("b", LIMITS["R"], 80, 2, 9) == "shift: would be back at 91.0 s, after 90 s"
+    assert some.too_late("b", LIMITS["S"], 80, 2, 9) == some.too_late("b", LIMITS["R"], 80, 2, 8) == ""
+    assert model("shift").too_late("b", model("shift").limits(R), 80, 2, 9) == ""
 
 
 def test_times_at_which_all_of_a_unit_may_begin():
@@ -120,7 +121,8 @@ def earliest(problem, plan):
         robot, home_s = problem.robots[i], 0.0
         if tasks and robot.place_at_end(problem.mission.rules) is not None:
             home_s = float(problem.travel_seconds(i, [tasks[-1]], [problem.end(i)])[0, 0])
-        more = {"robot": robot, "home_s": home_s, "longest_s": robot.longest_duty_s}
+        limits = UnderWay(problem.mission, ()).limits(robot)
+        more = {"robot": robot.id, "limits": limits, "home_s": home_s}
         courses.append(Course(robot.available_from_s, route.tasks, legs_s, **more))
         for j, name in zip(tasks, route.tasks, strict=True):
             lasts_s[name] = max(lasts_s.get(name, 0.0), float(problem.work_seconds(i)[j]))
@@ -140,3 +142,19 @@ def test_the_schedule_is_that_of_plans():
         assert begins_s == pytest.approx(stated, abs=1e-5), seed
         compared += len(stated)
     assert compared > 50
+
+
+def test_from_when_on_a_robot_works_so_long():
+    limits = UnderWay(MISSION, ()).limits(Robot(id="t", position=(0, 0), shifts_s=((0, 10), (20, 30), (40, None))))
+    for now, seconds, begins in ((0, 10, 0), (1, 10, 20), (1, 11, 40), (1, 9, 1), (12, 5, 20), (29, 2, 40)):
+        assert limits.set_out(now, seconds) == begins
+        assert LIMITS["S"].set_out(now, seconds) == now
+    assert limits.back_s(12, 5) == 25
+    assert limits.back_s(12, 0) == 12
+
+
+def test_a_duty_counts_from_when_the_robot_left():
+    limits = UnderWay(MISSION, ()).limits(Robot(id="t", position=(0, 0), longest_duty_s=50, available_until_s=90))
+    assert limits.too_late(60, 5, 20) == limits.too_late(60, 30, math.inf) == ""
+    assert limits.too_late(60, 11, 20) == "duty: would be back at 71.0 s, after 70 s"
+    assert limits.too_late(60, 31, None) == "shift: would be back at 91.0 s, after 90 s"

@@ -15,6 +15,7 @@ from muster import core
 from muster.allocation.allocator import Routes, admissible_routes
 from muster.mission.model import Task
 from muster.mission.plan import Plan
+from muster.model.parts import Begun
 from muster.model.problem import Problem
 from muster.model.rules import all_rules
 from muster.model.rules.rule import ROUNDING
@@ -79,17 +80,17 @@ def _outlasting(problem: Problem) -> Problem:
     if not problem.model.parts.over_by or core.Inspection(problem.core, fixed).admissible:
         return problem
     rules = replace(problem.mission.rules, objective="makespan", makespan_includes_return=True)
-    endless = _at_work(replace(problem, mission=replace(problem.mission, rules=rules)), None)
+    endless = _at_work(replace(problem, mission=replace(problem.mission, rules=rules)), math.inf)
     end_s = core.Inspection(endless.core, fixed).makespan
     if end_s is None:
         return problem
     return _at_work(problem, end_s)
 
 
-def _at_work(problem: Problem, end_s: float | None) -> Problem:
-    """The problem with robots that can be at work until a time; None: however long."""
-    robots = (reduce(lambda one, rule: rule.outlasting(one, end_s), problem.rules, robot) for robot in problem.robots)
-    return replace(problem, robots=tuple(robots))
+def _at_work(problem: Problem, end_s: float) -> Problem:
+    """The problem with robots that can be at work until a time; inf: however long."""
+    begun = problem.begun or (Begun(),) * len(problem.robots)
+    return replace(problem, begun=tuple(replace(one, over_s=end_s) for one in begun))
 
 
 def admissible_part(problem: Problem, routes: Routes) -> Routes:

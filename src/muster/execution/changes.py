@@ -294,6 +294,7 @@ def new_robot_state(
         last_heard_s=now,
         since_s=now,
         energy=RobotEnergy.of(as_it_holds),
+        limits=ledger.model.limits(as_it_holds),
     )
 
 

@@ -13,13 +13,13 @@ from muster.execution.record import Tell
 from muster.execution.robots.monitor import exceeds
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.station_calls import Call, as_one, next_call
-from muster.execution.robots.task_motion import MotionPlanner, Way, Work, along, travel_s, work_of
+from muster.execution.robots.task_motion import Work, along, travel_s, work_of
 from muster.execution.robots.work_orders import delayed, least_s, least_usage, stop_work, usage_home, work_for
 from muster.execution.stations.energy_watch import EnergyWatch
 from muster.execution.stations.slots import AT_STATION
 from muster.execution.stations.station_service import StationService
 from muster.execution.timing.beginning import Beginning
-from muster.execution.timing.duty import back_s, over_by_s
+from muster.execution.timing.forecast import Forecast
 from muster.mission.system.clock import TIME_ROUNDING_S
 from muster.model.rules.team import waits_for_team, waits_to_start_with
 from muster.motion.actions import Impossible
@@ -41,8 +41,8 @@ class Dispatch:
         says whether work may begin.
     capacity
         how much a robot can use; None: any amount.
-    plan_motion, way
-        what a task makes a robot do, and how it gets there.
+    forecast
+        says how long ways and works take, and when a robot leaves its start.
     emit, ask
         receive every event; those that ask for a new plan.
     peers
@@ -56,8 +56,7 @@ class Dispatch:
         crew: Mapping[str, RobotState],
         beginning: Beginning,
         capacity: Callable[[RobotState], float | None],
-        plan_motion: MotionPlanner,
-        way: Way,
+        forecast: Forecast,
         emit: Tell,
         ask: Tell,
         peers: Peers | None = None,
@@ -68,11 +67,9 @@ class Dispatch:
         self._crew = crew
         self._beginning = beginning
         self._capacity = capacity
-        self._plan_motion = plan_motion
-        self._way = way
+        self._forecast, self._plan_motion, self._way = forecast, forecast.plan_motion, forecast.way
         self._emit, self._ask = emit, ask
         self._peers = peers
-        self.leaves_s: Callable[[RobotState, float], float] = lambda state, now: now  # of whose duty is limited
         self.ahead: Mapping[str, Mapping[str, float]] = {}  # by the plan in force: see `Revision`
 
     def advance(self, state: RobotState, now: float) -> None:
@@ -282,7 +279,8 @@ class Dispatch:
             reason = "there is no way" if way is None else "there is no way from it to the end of the route"
             self.refuse(state, task, f"unreachable: {reason}", now)
             return
-        if wrong := self._goods.refusal(self._ledger.tasks[task], state.robot):
+        wrong = self._goods.refusal(self._ledger.tasks[task], state.robot) or self._aboard_too_long(state, task)
+        if wrong:
             self._leave_misfit(state, task, wrong, now)
             return
         there = along(way, task)
@@ -300,8 +298,8 @@ class Dispatch:
             state.work = None
             return
         late = self._too_late(state, task, now + least_s(state, state.position, there), leaves_s=now)
-        if state.robot.set_out(now, way_s) == math.inf:
-            late = "shift: no shift left lasts as long as the way there"
+        if state.limits.set_out(now, way_s) == math.inf:
+            late = state.limits.never("the way there")
         if late:
             state.work = None
             self.refuse(state, task, late, now)
@@ -314,11 +312,21 @@ class Dispatch:
         state.send(now, Activity.DRIVING, [*there, *(delayed(work, delay) if state.works else ())])
         self._emit(SetsOut(robot=state.robot.id, task=task, used=state.used))
 
+    def _aboard_too_long(self, state: RobotState, task: str) -> str:
+        """Why what a robot takes on board at a task of its route would be there for too long; empty: it would not."""
+        model = self._ledger.model
+        for delivery in model.soon_after([task]):
+            if delivery in state.route and model.delivers(delivery, task):
+                takes_s = self._forecast.between_s(state, task, delivery)
+                if wrong := model.too_long_between(task, delivery, takes_s):
+                    return wrong
+        return ""
+
     def _leaves_later(self, state: RobotState, now: float) -> bool:
         """Whether a robot does not leave its start yet, as its duty would last too long."""
-        if state.robot.longest_duty_s is None or state.known.left_s is not None:
+        if state.limits.lasts_most_s == math.inf or state.known.left_s is not None:
             return False
-        leaves = self.leaves_s(state, now)
+        leaves = self._forecast.leaves_s(state, now)
         if leaves <= now + TIME_ROUNDING_S:
             return False
         state.rests_until_s = leaves
@@ -380,20 +388,10 @@ class Dispatch:
         if cause != "prerequisite" and words != said:
             self._emit(Waits(robot=state.robot.id, task=task, cause=cause, words=words))
 
-    def _too_late(self, state: RobotState, task: str, begin_s: float, leaves_s: float = math.inf) -> str:
+    def _too_late(self, state: RobotState, task: str, begin_s: float, leaves_s: float | None = None) -> str:
         """Why a robot that is at a task at a time cannot do it, by its times and the robot's; else empty."""
-        works_s = state.robot.set_out(self._ledger.model.next_begin_s([task], begin_s), state.work_s)
-        late = self._ledger.model.too_late(task, state.robot, begin_s, state.work_s, state.home_s)
-        if late or works_s == math.inf:
-            return late or "shift: no shift left lasts as long as the work"
-        back = back_s(state, works_s + state.work_s, state.home_s)
-        if back == math.inf:
-            return "shift: no shift left lasts as long as the way to its end"
-        rest_s = back - works_s - state.work_s  # breaks included
-        late = self._ledger.model.too_late(task, state.robot, works_s, state.work_s, rest_s)
-        if late or back <= (over_s := over_by_s(state, leaves_s)) + TIME_ROUNDING_S:
-            return late
-        return f"duty: would be back at {back:,.1f} s, after {over_s:,g} s"
+        left_s = leaves_s if state.known.left_s is None else state.known.left_s
+        return self._ledger.model.too_late(task, state.limits, begin_s, state.work_s, state.home_s, left_s)
 
     def _work(self, task: str, team: Sequence[RobotState], now: float) -> None:
         for state in team:
@@ -421,7 +419,9 @@ class Dispatch:
         """Robots of the crew begin a task, of all the robots that do it."""
         for state in team:
             state.wait_cause = state.wait_words = ""
-        self._emit(Starts(task=task, robot=robots[0], team=_team(robots), used=self._used(robots[0]), from_s=from_s))
+        routed = {name for state in self._crew.values() if not state.out for name in state.route}
+        tell = self._ask if routed.intersection(self._ledger.model.alternatives(task)) else self._emit
+        tell(Starts(task=task, robot=robots[0], team=_team(robots), used=self._used(robots[0]), from_s=from_s))
 
     def _used(self, robot: str) -> float | None:
         """The usage of a robot, if it is of the crew."""

@@ -153,13 +153,11 @@ class Executor:
             self.crew,
             self._beginning,
             self._capacity,
-            plan_motion,
-            way,
+            self._forecast,
             self.emit,
             self._ask,
             peers,
         )
-        self._dispatch.leaves_s = self._forecast.leaves_s
         self._dispatch.service = StationService(
             self.stations, self.ledger, self.goods, self._dispatch.way, self.emit, self._ask
         )
@@ -540,7 +538,7 @@ class Executor:
             mission_time_s=over_s - self.begun_s,
             reallocations=self.state.replanned,
             orders=self.orders.report(self.now_s - self.begun_s, self._script.not_taken_from_s, self.clock_lag),
-            overtime_s=overtime_s(self._worked, self.ledger.model, self.now_s),
+            overtime_s=overtime_s(self._worked, self.now_s),
             traffic=self.traffic.with_waits(self.state.traffic),
             waits_s=self._punctuality.waits_s,
             back_s=back_s(self._worked) if self.mission.rules.makespan_includes_return else (),

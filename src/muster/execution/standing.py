@@ -185,7 +185,7 @@ class Forgetting:
         gone = [name for name in self.ledger.tasks if name in settled]
         for name in gone:
             if self.ledger.is_open(name):
-                self.emit(Lost(task=name, reason=self.ledger.expired[name]))
+                self.emit(Lost(task=name, reason=self.ledger.barred[name]))
         if gone:
             self.emit(Forgets(tasks=tuple(gone)))
             self.forecast.forget()

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import MISSING, fields, replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from muster.mission.declared_rules import usable_rules
 from muster.mission.errors import ParameterError
 from muster.mission.robots import Robot
+from muster.mission.stations import Station
 from muster.mission.tasks import Task
 from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
@@ -23,15 +24,15 @@ _KEYS: Mapping[str, tuple[str, ...]] = {
     "prerequisite": ("lags",),
     "window": ("window_s",),
     "deadline": ("deadline_s",),
-    "shift": ("available_until_s", "shifts_s"),
-    "duty": ("longest_duty_s",),
+    "shift": ("available_until_s",),
     "team": ("robots_needed", "team", "needs"),
     "relation": ("same_robot_as", "other_robot_than", "starts_with"),
+    "lock": ("only_robots",),
     "load": ("load", "delivers", "load_capacity", "load_at_start"),
     "battery": ("battery",),
 }
 """By rule the keys of tasks and robots that are as by default where it does not hold, beside those that name it."""
-T = TypeVar("T", Task, Robot)
+T = TypeVar("T", Task, Robot, Station)
 
 
 def ignorable_rule(word: object) -> str | None:
@@ -62,8 +63,13 @@ def ignored_rules(words: str | Collection[str]) -> tuple[str, ...]:
 
 
 def as_it_holds(item: T, ignored: Collection[str]) -> T:
-    """A task or robot without the rules that do not hold about times, teams, goods and energy."""
+    """A task, robot or station without the rules that do not hold about times, teams, goods, energy and calls."""
     keys = {key for rule in ignored for key in _KEYS.get(rule, ())}
-    off = [f for f in fields(item) if f.name in keys or f.metadata.get("rule") in ignored]
-    without = {f.name: {} if f.default is MISSING else f.default for f in off}
-    return replace(item, **without) if without else item
+    off = {f.name for f in fields(item) if f.name in keys or f.metadata.get("rule") in ignored}
+    return without(item, off) if off else item
+
+
+def without(item: T, keys: Collection[str], **changes: Any) -> T:
+    """A task, robot or station, changed, without some keys and without those that stand only beside these."""
+    off = [f for f in fields(item) if f.name in keys or f.metadata.get("beside") in keys]
+    return replace(item, **{f.name: {} if f.default is MISSING else f.default for f in off}, **changes)

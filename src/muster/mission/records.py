@@ -72,8 +72,7 @@ def spec(
         what files call it, where Python keeps the word for itself (`from`); by default the field's name.
     more
         further metadata: how a command calls it, where the field counts. `rule` is the word of the rule that the field
-        states, which `--ignore` takes; `carried_out=False` says that runs do not
-        know the rule yet.
+        states, which `--ignore` takes; `beside` the field without which it has no meaning.
     """
     metadata: dict[str, Any] = {"kind": kind, "doc": doc, "unit": unit, "if_used": if_used} | more
     metadata |= {"key": key} if key else {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -146,29 +145,24 @@ class Robot(RuleKeys, bearer="robot"):
         """Return the robot available no sooner than at a time, with what is left of its shifts then."""
         if not self.shifts_s:
             return replace(self, available_from_s=max(self.available_from_s, now_s))
-        return self.with_shifts(
-            [(max(begins, now_s), ends) for begins, ends in self.shifts_s if ends is None or ends > now_s]
-            or [(now_s, now_s)]
-        )
+        return self._with_shifts(self._shifts_from(now_s))
 
-    def until_time(self, end_s: float) -> Robot:
-        """Return the robot available no longer than until a time."""
-        shifts = self.shifts_s or ((self.available_from_s, self.available_until_s),)
-        kept = [(begins, end_s if ends is None else min(ends, end_s)) for begins, ends in shifts if begins < end_s]
-        return self.with_shifts(kept or [(self.available_from_s, self.available_from_s)])
+    def busy(self, from_s: float, until_s: float) -> Robot:
+        """Return the robot available from a time on: at work until another, and then in what is left of its shifts."""
+        if not self.shifts_s:
+            ends_s = self.available_until_s
+            ends_s = None if ends_s is None else max(ends_s, from_s)
+            return replace(self, available_from_s=from_s, available_until_s=ends_s)
+        left = self._shifts_from(until_s)
+        return self._with_shifts([(from_s, until_s), *left] if from_s < until_s else left)
 
-    def with_shifts(self, shifts: Sequence[Window]) -> Robot:
-        """Return the robot with other shifts: at least one, in order."""
+    def _shifts_from(self, now_s: float) -> list[Window]:
+        left = [(max(begins, now_s), ends) for begins, ends in self.shifts_s if ends is None or ends > now_s]
+        return left or [(now_s, now_s)]
+
+    def _with_shifts(self, shifts: Sequence[Window]) -> Robot:
         (begins, _), (_, ends) = shifts[0], shifts[-1]
         return replace(self, shifts_s=tuple(shifts), available_from_s=begins, available_until_s=ends)
-
-    def set_out(self, now_s: float, seconds: float) -> float:
-        """Return from when on, not before now, a shift lasts so long; inf: none does."""
-        if not self.shifts_s:
-            return now_s
-        tried = ((max(now_s, begins), ends) for begins, ends in self.shifts_s)
-        lasts = (begin for begin, ends in tried if ends is None or begin + seconds <= ends + _ROUNDING_S)
-        return next(lasts, math.inf)
 
     def file_values(self) -> Mapping[str, Any]:
         return _AVAILABLE if self.shifts_s else {}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from muster.mission.records import Checked, record, spec
@@ -60,8 +61,14 @@ class Station(Checked):
         "ids of the only robots that may call there",
         default=None,
         rule="lock",
-        carried_out=False,
     )
+
+    def for_robots(self, robots: Collection[str]) -> Station | None:
+        """Return the station as it is where there are no other robots; None: it is for none of them."""
+        if self.only_robots is None:
+            return self
+        own = tuple(name for name in self.only_robots if name in robots)
+        return replace(self, only_robots=own) if own else None
 
     @property
     def charges(self) -> bool:

@@ -1,18 +1,15 @@
-"""Refuses features that this version can neither plan nor judge yet, and rules that it cannot carry out yet."""
+"""Refuses features that this version can neither plan nor judge yet."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
-from itertools import chain
+from collections.abc import Iterator
 
 from muster.mission.errors import NotSupportedError
 from muster.mission.goods import by_commodity
-from muster.mission.mission_parts import all_robots, all_work
 from muster.mission.model import Action, Mission, Point, Task
-from muster.mission.records import findings, stated_rules
-from muster.mission.value_types import Fault, Path, shown
-from muster.mission.yaml_writer import plain
+from muster.mission.records import findings
+from muster.mission.value_types import Fault, shown
 
 _LARGEST_COORDINATE = 1e150  # the square of a greater one may be beyond float64
 _MOST_LANES = 10_000  # of a raster search
@@ -28,33 +25,9 @@ def require_supported(mission: Mission) -> None:
         for actions with geometry beside travel tables, which do not know where they begin and end; for raster searches
         of very many lanes; and for numbers whose sums may overflow.
     """
-    _refuse(mission, _unsupported(mission))
-
-
-def require_carried_out(mission: Mission) -> None:
-    """Refuse a mission that asks for more than this version can carry out.
-
-    Raises
-    ------
-    NotSupportedError
-        for rules that runs do not know yet, and for all that `require_supported` refuses.
-    """
-    _refuse(mission, chain(_unsupported(mission), _not_carried_out(mission)))
-
-
-def _refuse(mission: Mission, faults: Iterable[Fault]) -> None:
-    found = findings(faults, mission.source)
+    found = findings(_unsupported(mission), mission.source)
     if found:
         raise NotSupportedError(found)
-
-
-def _not_carried_out(mission: Mission) -> Iterator[Fault]:
-    stations = ((("stations", k), station) for k, station in enumerate(mission.stations))
-    records: Iterable[tuple[Path, object]] = chain(all_robots(mission), all_work(mission), stations)
-    for path, one in records:
-        for f in (f for f in stated_rules(one) if not f.metadata.get("carried_out", True)):
-            expected = "nothing here yet: carrying out does not know this rule"
-            yield Fault((*path, f.name), shown(plain(getattr(one, f.name))), expected)
 
 
 def _unsupported(mission: Mission) -> Iterator[Fault]:

@@ -12,12 +12,20 @@ from muster.mission.mission_parts import new_tasks, unknown_id, work_that
 from muster.mission.tasks import Task, Work
 from muster.mission.value_types import Fault, Path, shown
 
+IN_ITS_PLACE = "done in its place"
+"""How a task is named that is done in place of another, behind its id and "is"."""
 RELATIONS = ("same_robot_as", "other_robot_than", "starts_with", "either_or")
 _tasks_named_by = attrgetter(*RELATIONS)
 
 
 def _names_tasks(work: Work) -> bool:
     return any(_tasks_named_by(work))
+
+
+def names_in(task: Task) -> tuple[str, ...]:
+    """The tasks that a task refers to."""
+    tied = (name for names in _tasks_named_by(task) for name in names)
+    return (*task.prerequisites, *tied, *(() if task.delivers is None else (task.delivers,)))
 
 
 def relation_faults(mission: MissionData) -> Iterator[Fault]:

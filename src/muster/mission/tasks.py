@@ -184,7 +184,6 @@ class Work(RuleKeys, bearer="task"):
         default=(),
         if_used=True,
         rule="either-or",
-        carried_out=False,
     )
     load: Amount | None = spec(
         Amounts(), "what it takes on board, or by commodity; below 0: puts down", default=None, if_used=True
@@ -198,7 +197,7 @@ class Work(RuleKeys, bearer="task"):
         default=None,
         if_used=True,
         rule="aboard",
-        carried_out=False,
+        beside="delivers",
     )
     duration_s: float | None = spec(Number(minimum=0), "time it takes a robot of efficiency 1", default=None)
     priority: float = spec(Number(above=0), "weight among the tasks completed", default=1.0)

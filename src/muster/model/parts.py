@@ -7,7 +7,7 @@ gives way to the earlier one, and of two domains what is in both is left.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -89,12 +89,39 @@ class Service:
         return cls(Refill.of(station), station.unloads, station.slots)
 
 
+@dataclass(frozen=True)
+class Begun:
+    """What a robot under way has begun: limits of its times hold of what it is yet to do.
+
+    Parameters
+    ----------
+    busy_s
+        from when until when it has been at work, or is: it does not rest then.
+    left_s
+        when it left its start; None: it has not.
+    over_s
+        before which its route cannot be over any more.
+    """
+
+    busy_s: tuple[float, float] = -math.inf, -math.inf
+    left_s: float | None = None
+    over_s: float = -math.inf
+
+    def rests(self, spans: Openings) -> Openings:
+        """What is left of spans, and the one in which it is busy."""
+        since, free = self.busy_s
+        left = [(max(begins, free), ends) for begins, ends in spans if ends > free] or [(free, free)]
+        return [(since, free), *left] if since < free else left
+
+
 @dataclass(eq=False)
 class Parts:
     """What rules have contributed so far, to a model of so many robots and tasks."""
 
     robots: int
     tasks: int
+    begun: Mapping[int, Begun] = field(default_factory=dict)  # by robot
+    over: Collection[int] = ()  # tasks that stand for what was done: when and by when binds them no more
     openings: dict[int, Openings] = field(default_factory=dict)
     ends_by: dict[int, float] = field(default_factory=dict)
     over_by: dict[int, float] = field(default_factory=dict)
@@ -120,30 +147,31 @@ class Parts:
 
     def opens(self, j: int, spans: Iterable[tuple[float, float | None]]) -> None:
         """Task j begins in one of these spans."""
-        own = sorted((opens, math.inf if closes is None else closes) for opens, closes in spans)
-        self._give("openings", j)
-        self.openings[j] = _common(self.openings[j], own) if j in self.openings else own
+        if j not in self.over:
+            self._within("openings", j, _openings(spans))
 
     def ends(self, j: int, latest_s: float) -> None:
         """Task j ends by a time."""
-        if latest_s < self.ends_by.get(j, math.inf):
-            self._give("ends_by", j)
-            self.ends_by[j] = latest_s
+        if j not in self.over:
+            self._at_most("ends_by", j, latest_s)
 
     def is_over(self, i: int, latest_s: float) -> None:
         """The route of robot i, its way to the end included, is over by a time."""
-        if latest_s < self.over_by.get(i, math.inf):
-            self._give("over_by", i)
-            self.over_by[i] = latest_s
+        over_s = self.begun[i].over_s if i in self.begun else latest_s
+        self._at_most("over_by", i, max(latest_s, over_s))
 
     def lasts(self, i: int, most_s: float) -> None:
         """From leaving its start to the end of its route robot i takes at most so long, however late it leaves."""
-        self.lasts_most[i] = min(most_s, self.lasts_most.get(i, math.inf))
+        left_s = self.begun[i].left_s if i in self.begun else None
+        if left_s is None:
+            self._at_most("lasts_most", i, most_s)
+        else:
+            self.is_over(i, left_s + most_s)
 
     def rests(self, i: int, spans: Iterable[tuple[float, float | None]]) -> None:
         """Robot i drives and works in these spans alone: each leg and each work within one of them."""
-        own = sorted((begins, math.inf if ends is None else ends) for begins, ends in spans)
-        self.spans[i] = _common(self.spans[i], own) if i in self.spans else own
+        own = _openings(spans)
+        self._within("spans", i, self.begun[i].rests(own) if i in self.begun else own)
 
     def follows(self, j: int, before: int, least_s: float = 0.0, most_s: float = math.inf) -> None:
         """Task j is done only if the one before it is, and begins so long after that ends, at least and at most."""
@@ -188,7 +216,7 @@ class Parts:
 
     def uses(self, i: int, most: float) -> None:
         """The usage of robot i is at most so much."""
-        self.capacity[i] = min(most, self.capacity.get(i, math.inf))
+        self._at_most("capacity", i, most)
 
     def stops(self, i: int, least: int) -> None:
         """Robot i does no task, or at least so many."""
@@ -202,12 +230,31 @@ class Parts:
         """Robot i has energy for so much usage at most, and at first; stations give it more."""
         self.energy[i] = room, at_start
 
+    def _at_most(self, limits: str, at: int, most: float) -> None:
+        """What rules say of a robot or task together is the least of it."""
+        known: dict[int, float] = getattr(self, limits)
+        if at not in known or most < known[at]:
+            known[at] = most
+            self._give(limits, at)
+
+    def _within(self, openings: str, at: int, own: Openings) -> None:
+        """What rules say of a robot or task together is what is in the spans of each."""
+        known: dict[int, Openings] = getattr(self, openings)
+        both = _common(known[at], own) if at in known else own
+        if at not in known or both[-1] != known[at][-1]:
+            self._give(openings, at)
+        known[at] = both
+
     def _give(self, primitive: str, *of: int) -> None:
         self.given[primitive, of] = self.rule
 
     def named(self, word: str) -> None:
         """Remember the word of the rule that has contributed, for the primitives of which there were none before."""
         self.words |= {name: word for name, given in vars(self).items() if given and name not in self.words}
+
+
+def _openings(spans: Iterable[tuple[float, float | None]]) -> Openings:
+    return sorted((begins, math.inf if ends is None else ends) for begins, ends in spans)
 
 
 def _both(tied: dict[int, set[int]], j: int, k: int) -> None:

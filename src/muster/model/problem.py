@@ -15,7 +15,7 @@ import numpy.typing as npt
 from muster import core
 from muster.mission.declared_rules import rules_in_order
 from muster.mission.errors import ParameterError
-from muster.mission.ignorable_rules import ignored_rules
+from muster.mission.ignorable_rules import as_it_holds, ignored_rules
 from muster.mission.model import OBJECTIVES, Mission, Point, Robot, Station, Task
 from muster.mission.plan import tie_order
 from muster.mission.supported_features import require_supported
@@ -24,7 +24,7 @@ from muster.mission.value_types import shown
 from muster.model.core_arrays import core_arrays
 from muster.model.lengths import Measured
 from muster.model.measured_energy import Drains, EnergyLeft
-from muster.model.parts import Parts, Service
+from muster.model.parts import Begun, Parts, Service
 from muster.model.plan_model import PlanModel
 from muster.model.rules import Rule, all_rules
 from muster.model.subproblem import cut_down
@@ -85,6 +85,7 @@ class Problem:
     mapped: RobotPaths | None = None  # over the mission's map, as far as they are known already
     waiting: Waiting = NO_WAITING  # that is expected on ways
     past: Mapping[str, tuple[Task, ...]] | None = None  # of tasks that stand for what was done, that; None: it begins
+    begun: tuple[Begun, ...] = ()  # for each robot of a mission under way; empty: it begins
     sooner: tuple[float, ...] = ()  # for each task when it must have ended, beside what rules say; empty: none
 
     @classmethod
@@ -95,9 +96,11 @@ class Problem:
         require_supported(mission)
         ignored = ignored_rules(ignored)
         if "lock" in ignored:  # taken off the tasks, as planning makes locks of its own
-            tasks = tuple(replace(task, only_robots=None) for task in mission.tasks)
-            stations = tuple(replace(station, only_robots=None) for station in mission.stations)
-            mission = replace(mission, tasks=tasks, stations=stations)
+            mission = replace(
+                mission,
+                tasks=tuple(as_it_holds(task, ("lock",)) for task in mission.tasks),
+                stations=tuple(as_it_holds(station, ("lock",)) for station in mission.stations),
+            )
         return cls(
             mission=mission,
             objective=objective,
@@ -137,6 +140,7 @@ class Problem:
             levels=tuple(self.levels[i] for i in robots) if self.levels else (),
             known=known,
             waiting=self.waiting.part(robots, places),
+            begun=tuple(self.begun[i] for i in robots) if self.begun else (),
             sooner=tuple(self.sooner[j] for j in tasks) if self.sooner else (),
         )
 
@@ -173,7 +177,8 @@ class Problem:
     @cached_property
     def model(self) -> PlanModel:
         """What the rules in force come to."""
-        parts = Parts(len(self.robots), len(self.tasks))
+        over = {self.task_index[name] for name in self.past or ()}
+        parts = Parts(len(self.robots), len(self.tasks), dict(enumerate(self.begun)), over)
         for rule in self.rules:
             parts.rule = rule.word
             rule.compile(self, parts)
@@ -236,9 +241,10 @@ class Problem:
     @cached_property
     def asked(self) -> Mapping[str, str]:
         """What not every allocator can do, and the problem asks for: each with the place that does so first."""
-        said = {word: where for rule in all_rules() for word, where in rule.asks(self).items() if where is not None}
         word_of = {primitive: word for rule in all_rules() for primitive, word in rule.asked.items()}
         given = {word_of[part]: rule for part, rule in self.model.parts.words.items() if part in word_of}
+        asks = ((rule.word, word, where) for rule in all_rules() for word, where in rule.asks(self).items())
+        said = {word: where for rule, word, where in asks if where is not None and given.get(word, rule) == rule}
         found = said | {word: self._stated(rule) for word, rule in given.items() if word not in said}
         late = {"lateness": "objective lateness"} if self.objective == "lateness" else {}
         return found | late | (_RETURN_ASKED if self._makespan_includes_ways_to_ends else {})

@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from muster.mission.model import Robot
+from muster.model.robot_limits import NO_LIMITS, RobotLimits
 from muster.model.under_way import UnderWay
 
 _SETTLED_S = 1e-6
@@ -20,21 +20,17 @@ _SETTLED_S = 1e-6
 class Course:
     """What lies ahead of a robot: from when on it is free, its tasks in order, and seconds on the way to each.
 
-    It may be on the first way already, goes home in the end, and has to be there so long after it leaves, if that is
-    still ahead of it.
+    It may be on the first way already, goes home in the end, and may be yet to leave its start.
     """
 
     free_s: float
     tasks: Sequence[str]
     legs_s: Sequence[float]
-    robot: Robot | None = None
+    robot: str = ""
+    limits: RobotLimits = NO_LIMITS
     is_under_way: bool = False
     home_s: float = 0.0
-    longest_s: float | None = None
-
-    def set_out(self, now_s: float, seconds: float) -> float:
-        """From when on the robot, if it is said, is busy for so long without a rest."""
-        return now_s if self.robot is None else self.robot.set_out(now_s, seconds)
+    has_left: bool = False
 
 
 @dataclass
@@ -94,23 +90,23 @@ class Schedule:
 
     def _follow(self, course: Course) -> None:
         """The robot arrives at one task after the other."""
-        leaves_s = course.free_s if course.robot is None else self.leaves_s.get(course.robot.id, course.free_s)
+        leaves_s, limits = self.leaves_s.get(course.robot, course.free_s), course.limits
         for k, (name, leg_s) in enumerate(zip(course.tasks, course.legs_s, strict=True)):
-            sets_out_s = leaves_s if k == 0 and course.is_under_way else course.set_out(leaves_s, leg_s)
+            sets_out_s = leaves_s if k == 0 and course.is_under_way else limits.set_out(leaves_s, leg_s)
             arrives_s = sets_out_s + leg_s
             self._arrives_s[name] = max(self._arrives_s[name], arrives_s)
             self._raise(name, arrives_s)
-            self._raise(name, course.set_out(self.begins_s[name], self.lasts_s[name]))
+            self._raise(name, limits.set_out(self.begins_s[name], self.lasts_s[name]))
             leaves_s = self.begins_s[name] + self.lasts_s[name]
-        if course.robot is not None and course.longest_s is not None and course.tasks:
-            self._leave_late(course, course.robot.id, leaves_s)
+        if course.tasks and not course.has_left and limits.lasts_most_s < math.inf:
+            self._leave_late(course, leaves_s)
 
-    def _leave_late(self, course: Course, robot: str, free_s: float) -> None:
+    def _leave_late(self, course: Course, free_s: float) -> None:
         """The robot leaves its start soon enough before it is at its end."""
-        over_s = self.over_s[robot] = course.set_out(free_s, course.home_s) + course.home_s
-        leaves_s = over_s - (1 - self.margin) * (course.longest_s or 0.0)
-        if self.leaves_s.get(robot, course.free_s) + _SETTLED_S < leaves_s < math.inf:
-            self.leaves_s[robot], self._raised = leaves_s, True
+        over_s = self.over_s[course.robot] = course.limits.back_s(free_s, course.home_s)
+        leaves_s = over_s - (1 - self.margin) * course.limits.lasts_most_s
+        if self.leaves_s.get(course.robot, course.free_s) + _SETTLED_S < leaves_s < math.inf:
+            self.leaves_s[course.robot], self._raised = leaves_s, True
 
     def _wait(self, name: str) -> None:
         """The tasks before it have ended for long enough, and it may begin, as may those that begin with it."""

@@ -6,20 +6,23 @@ No travel is looked up, so that it is cheap to compile the rules again whenever 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Container, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from operator import is_not
 
 import numpy as np
 
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.system.clock import TIME_ROUNDING_S
+from muster.mission.task_relations import IN_ITS_PLACE
 from muster.model.bottleneck import matched
 from muster.model.parts import Openings
 from muster.model.plan_model import PlanModel
 from muster.model.problem import Problem
-from muster.model.rules import deadline, prerequisite, shift, window
+from muster.model.robot_limits import RobotLimits
+from muster.model.rules.rule import listed
 from muster.model.rules.team import missing_of_seat
+from muster.model.rules.times import rounded
 
 _ROUNDING = 1e-9  # relative; by which sums may be below what is needed
 
@@ -50,15 +53,15 @@ class Missed:
 
     Parameters
     ----------
-    rule
-        the word of the rule: `window`, `deadline` or `prerequisite`.
+    limit
+        the primitive: `openings`, `ends_by` or `gaps`.
     reason
         in words, which begin with the rule's.
     next_s
         when it may begin all the same, in the next opening; None: never.
     """
 
-    rule: str
+    limit: str
     reason: str
     next_s: float | None = None
 
@@ -80,7 +83,7 @@ class UnderWay:
     mission: Mission
     tasks: Collection[Task]
     ignored: Collection[str] = ()
-    _over_by: dict[str, tuple[Robot, float]] = field(default_factory=dict)
+    _limits: dict[str, tuple[Robot, RobotLimits]] = field(default_factory=dict)
     _lacking: dict[str, tuple[Sequence[object], str]] = field(default_factory=dict)  # as last asked about each task
 
     def __post_init__(self) -> None:
@@ -143,6 +146,19 @@ class UnderWay:
         found = (j for name in tasks for j in self._soon_after.get(self._index[name], ()))
         return [self._names[j] for j in dict.fromkeys(found)]
 
+    def delivers(self, task: str, pickup: str) -> bool:
+        """Whether a task delivers what another takes on board."""
+        return self._model.pickups[self._index[task]] == self._index[pickup]
+
+    def too_long_between(self, task: str, after: str, takes_s: float) -> str:
+        """Why a task cannot begin soon enough after another, which takes so long at least; empty: it can."""
+        most_s = self.before(after)[task][1]
+        if takes_s <= most_s + TIME_ROUNDING_S:
+            return ""
+        word = self._model.given_by("gaps", self._index[task], self._index[after])
+        way = f"the way on board from the end of {task} to the begin of {after}"
+        return f"{word}: {way} takes at least {takes_s:,.1f} s; expected at most {most_s:,g} s"
+
     def by_the_same(self, task: str) -> list[str]:
         """The tasks that the robots of a task do, if they are done."""
         return [self._names[k] for k in self._model.same_crew[self._index[task]]]
@@ -150,6 +166,32 @@ class UnderWay:
     def by_others(self, task: str) -> list[str]:
         """The tasks that none of the robots of a task does."""
         return [self._names[k] for k in self._model.apart[self._index[task]]]
+
+    def alternatives(self, task: str) -> list[str]:
+        """The tasks of which none is done if a task is."""
+        return [self._names[k] for k in self._model.exclusive[self._index[task]]]
+
+    def replaced(self, begun: Container[str], over: Container[str]) -> dict[str, str]:
+        """The tasks in whose place another is done, which has begun; and why they are not done.
+
+        What delivers what a task took on that has begun is to be done, if it is not over for another reason.
+        """
+        excluding, pickups = self._model.parts.exclusive, self._model.pickups
+        word, found = self._model.word_of("exclusive"), {}
+        for j in excluding:
+            if self._names[j] not in begun:
+                others = (k for k in self._model.exclusive[j] if self._is_chosen(k, pickups[k], begun, over))
+                if (other := next(others, None)) is not None:
+                    found[self._names[j]] = f"{word}: {self._names[other]} is {IN_ITS_PLACE}"
+        return found
+
+    def _is_chosen(self, j: int, pickup: int, begun: Container[str], over: Container[str]) -> bool:
+        """Whether a task has begun, or delivers what is on board."""
+        name = self._names[j]
+        return name in begun or (pickup >= 0 and self._names[pickup] in begun and name not in over)
+
+    def _giver(self, limit: str, task: str) -> str:
+        return self._model.given_by(limit, self._index[task])
 
     def openings(self, task: str) -> Openings:
         """When a task may begin; empty: at any time."""
@@ -165,10 +207,15 @@ class UnderWay:
         return min(openings[-1][1] if openings else math.inf, self.ends_by_s(task))
 
     def over_by_s(self, robot: Robot) -> float:
-        """When the route of a robot, of the mission or not, is over at the latest; inf: whenever."""
-        known = self._over_by.get(robot.id)
+        """When the route of a robot is over at the latest; inf: whenever."""
+        return self.limits(robot).over_by_s
+
+    def limits(self, robot: Robot) -> RobotLimits:
+        """What is asked of a robot, of the mission or not."""
+        known = self._limits.get(robot.id)
         if known is None or known[0] is not robot:
-            known = self._over_by[robot.id] = robot, float(self._compiled((), (robot,)).over_by[0])
+            limits = RobotLimits.of(self._compiled((), (robot,)), self.mission.stations)
+            known = self._limits[robot.id] = robot, limits
         return known[1]
 
     def next_begin_s(self, tasks: Collection[str], now: float) -> float:
@@ -192,26 +239,31 @@ class UnderWay:
         """What tasks that begin together wait for now, but for robots."""
         missing = dict.fromkeys(before for name in unit for before in self.before(name) if before not in ends_s)
         if missing:
-            yield Wait("prerequisite", prerequisite.waits_for(missing))
+            yield Wait("prerequisite", f"waits for {listed(missing)}")
         opens = self.next_begin_s(unit, now)
         if opens > now + TIME_ROUNDING_S:
-            yield Wait("window", window.waits_until(opens), opens)
+            closed = next(name for name in unit if self.next_begin_s([name], now) > now)
+            yield Wait("window", f"waits for {self._giver('openings', closed)}: opens at {rounded(opens)}", opens)
         for name in unit:
             for before, (earliest, _) in self.spans(name, ends_s).items():
                 if earliest > now + TIME_ROUNDING_S:
-                    yield Wait("lag", prerequisite.waits_after(before, earliest), earliest)
+                    yield Wait("lag", f"waits for lag: {rounded(earliest)}, after {before}", earliest)
 
     def missed(self, task: str, now: float, ends_s: Mapping[str, float]) -> Iterator[Missed]:
         """Why a task can never begin any more; nothing: it still can."""
         if self.next_begin_s([task], now) == math.inf:
-            yield Missed(window.Window.word, window.is_closed(self.openings(task)[-1][1]))
+            yield self._missed("openings", task, f"closed at {rounded(self.openings(task)[-1][1])}")
         if now > (by_s := self.ends_by_s(task)) + TIME_ROUNDING_S:
-            yield Missed(deadline.Deadline.word, deadline.is_over(by_s))
+            yield self._missed("ends_by", task, f"{rounded(by_s)} is over")
         for before, (earliest, latest) in self.spans(task, ends_s).items():
             if self.next_begin_s([task], max(now, earliest)) > latest + TIME_ROUNDING_S:
                 ended_s = ends_s[before]
-                words = prerequisite.not_begun_within(before, latest - ended_s, ended_s)
-                yield Missed(prerequisite.Prerequisite.word, words)
+                words = f"not begun within {rounded(latest - ended_s)} after {before}, ended at {rounded(ended_s)}"
+                yield self._missed("gaps", task, words, before)
+
+    def _missed(self, limit: str, task: str, words: str, before: str | None = None) -> Missed:
+        at = [self._index[name] for name in (before, task) if name is not None]
+        return Missed(limit, f"{self._model.given_by(limit, *at)}: {words}")
 
     def missed_opening(self, task: str, meant_s: float, now: float) -> Missed | None:
         """That the opening in which a task was meant to begin is over, and another one is to come; None: it is not."""
@@ -219,7 +271,8 @@ class UnderWay:
         for opens, closes in openings if len(openings) > 1 else ():
             if opens - TIME_ROUNDING_S <= meant_s <= closes and now > closes + TIME_ROUNDING_S:
                 next_s = self.next_begin_s([task], now)
-                return Missed(window.Window.word, window.next_opens(closes, next_s), next_s)
+                words = f"closed at {closes:,g} s; the next is open from {next_s:,g} s on"
+                return replace(self._missed("openings", task, words), next_s=next_s)
         return None
 
     def begins_by_s(self, task: str, begin_s: float, lasts_s: float, ends_s: Mapping[str, float]) -> float:
@@ -237,16 +290,25 @@ class UnderWay:
         if len(spans) < len(self.gaps(task)):
             yield now
 
-    def too_late(self, task: str, robot: Robot, begin_s: float, lasts_s: float, home_s: float) -> str:
-        """Why a robot that is at a task at a time cannot do it and be back in time; empty: it can."""
-        arrive_s, begin_s = begin_s, self.next_begin_s([task], begin_s)
+    def too_late(
+        self, task: str, robot: RobotLimits, arrive_s: float, lasts_s: float, home_s: float, left_s: float | None = None
+    ) -> str:
+        """Why a robot that is at a task at a time cannot do it and be back in time; empty: it can.
+
+        `left_s` is when it left its start.
+        """
+        begin_s, works_s = -math.inf, arrive_s
+        while begin_s < works_s < math.inf:
+            begin_s = self.next_begin_s([task], works_s)
+            works_s = robot.set_out(begin_s, lasts_s)
         if begin_s == math.inf:
-            return window.would_be_closed(arrive_s)
-        ends_s, by_s = begin_s + lasts_s, self.ends_by_s(task)
+            return f"{self._giver('openings', task)}: would arrive at {arrive_s:,.1f} s, after it has closed"
+        if works_s == math.inf:
+            return robot.never("the work")
+        ends_s, by_s = works_s + lasts_s, self.ends_by_s(task)
         if ends_s > by_s + TIME_ROUNDING_S:
-            return deadline.would_end_late(ends_s, by_s)
-        over_by_s, back_s = self.over_by_s(robot), ends_s + home_s
-        return shift.would_be_back_late(back_s, over_by_s) if back_s > over_by_s + TIME_ROUNDING_S else ""
+            return f"{self._giver('ends_by', task)}: would end at {ends_s:,.1f} s, after {by_s:,g} s"
+        return robot.too_late(ends_s, home_s, left_s)
 
     # Who does it.
 

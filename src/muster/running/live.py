@@ -25,7 +25,7 @@ from muster.execution.fleet import Fleet, has_simulated_time, is_paused, reason_
 from muster.mission.errors import NetworkError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
-from muster.mission.supported_features import require_carried_out
+from muster.mission.supported_features import require_supported
 from muster.mission.system.clock import Clock
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import RobotPort
@@ -146,7 +146,7 @@ class Live:
             require_open_ways(mission, plan)  # later each robot stands anywhere, and a leg is checked when it is sent
         else:
             begin_s = max(begin_s, state.now_s)
-        require_carried_out(mission)
+        require_supported(mission)
         require_geometry(mission, "a run of real robots")
         robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
         manager = manager_for(

@@ -15,7 +15,7 @@ from muster.execution import Executor, Recorder, Status, broken_off, report_of, 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
-from muster.mission.supported_features import require_carried_out
+from muster.mission.supported_features import require_supported
 from muster.motion.maps.ros_yaml import write_ros_map
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.running.begun import Begun
@@ -86,7 +86,7 @@ class Simulation:
         request = ObservedRun(**how) if request is None else request
         ground = self._ground = unknown_ground_for(mission, request.unknown, request.explore)
         there = mission if begun is None else begun.standing(mission)
-        require_carried_out(mission)
+        require_supported(mission)
         require_geometry(mission, "a simulated run")
         robot_paths: RobotPaths | None
         if ground is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from muster.mission.plan import Reason
+from muster.mission.task_relations import IN_ITS_PLACE
 
 MOST_NAMED = 3
 """Robots that a reason names, and one more."""
@@ -19,6 +20,16 @@ def cancelled_at(at_s: float) -> str:
 def was_cancelled(reason: object) -> bool:
     """Whether a task is not done because it was cancelled; reports and events have it with those that are lost."""
     return str(reason).startswith(_CANCELLED)
+
+
+def has_stand_in(reason: object) -> bool:
+    """Whether a task is not done because another is in its place."""
+    return str(reason).endswith(IN_ITS_PLACE)
+
+
+def is_no_loss(reason: object) -> bool:
+    """Whether a task that is not done was not to be done any more: it was cancelled, or another is in its place."""
+    return was_cancelled(reason) or has_stand_in(reason)
 
 
 def begins_with(other: str) -> str:

@@ -265,11 +265,11 @@ class DeadlineMissed(TaskMissed):
 
 @happens("within_missed", "task {task} is not begun in time", mark=words.missed_mark)
 class WithinMissed(TaskMissed):
-    """Too much time has gone since a prerequisite ended."""
+    """Too much time has gone since a prerequisite, or what it delivers was taken on board."""
 
 
-MISSED = {"window": WindowMissed, "deadline": DeadlineMissed, "prerequisite": WithinMissed}
-"""By rule: the event that says that a task cannot begin in time any more."""
+MISSED = {"openings": WindowMissed, "ends_by": DeadlineMissed, "gaps": WithinMissed}
+"""By primitive: the event that says that a task cannot begin in time any more."""
 
 
 @happens("standstill", words.standstill, mark=words.ALARM)

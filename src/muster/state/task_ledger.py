@@ -13,7 +13,7 @@ from muster.mission.goods import as_amount
 from muster.mission.ignorable_rules import as_it_holds
 from muster.mission.model import Mission, Point, Robot, Task
 from muster.mission.system.clock import TIME_ROUNDING_S
-from muster.mission.task_relations import beginning_apart
+from muster.mission.task_relations import beginning_apart, names_in
 from muster.state.reasons import begins_with, cancelled_at, some_of
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ class Ledger:
         self.tasks[task.id] = as_it_holds(task, self.ignored)
         self.touched[task.id] = None
         self._tasks_changed()
-        if _referred_to(task) and (self.starts_s or self.ends_s or self.cancelled):
+        if names_in(task) and (self.starts_s or self.ends_s or self.cancelled):
             self._expire_if_too_late(task.id)
 
     def _expire_if_too_late(self, task: str) -> None:
@@ -177,6 +177,18 @@ class Ledger:
         """Tasks that are neither done nor cancelled, work under way included."""
         return [task for name, task in self.tasks.items() if name not in self.ends_s and name not in self.cancelled]
 
+    @property
+    def replaced(self) -> dict[str, str]:
+        """The open tasks in whose place others have begun or are done, and that in words."""
+        begun = {**self.starts_s, **self.ends_s}
+        found = self.model.replaced(begun, {**self.expired, **self.cancelled})
+        return {name: why for name, why in found.items() if self.is_open(name)}
+
+    @property
+    def barred(self) -> Mapping[str, str]:
+        """The open tasks that cannot begin: never any more, or as others are in their place; and why."""
+        return {**self.replaced, **self.expired}
+
     def is_open(self, task: str) -> bool:
         """Whether a task is neither done nor cancelled."""
         return task not in self.ends_s and task not in self.cancelled
@@ -195,6 +207,7 @@ class Ledger:
         """
         lost = {name: cancelled_at(at_s) for name, at_s in self.cancelled.items()}
         lost |= {task.id: why(task.id) + _out(task, gone) for task in self.open if task.id not in under_way}
+        lost |= {name: reason for name, reason in self.replaced.items() if name in lost}
         return {name: lost[name] for name in self.tasks if name in lost}
 
     @property
@@ -341,7 +354,8 @@ class Ledger:
         """Tasks done or cancelled before a time, or that can never begin, to which no other task refers."""
         over = {name for times in (self.ends_s, self.cancelled) for name, at_s in times.items() if at_s < before_s}
         over |= {name for name in self.expired if self.is_open(name)}
-        needed = {name for task in self.tasks.values() if task.id not in over for name in _referred_to(task)}
+        over |= {name for name in self.model.replaced(self.ends_s, self.tasks) if self.is_open(name)}
+        needed = {name for task in self.tasks.values() if task.id not in over for name in names_in(task)}
         return over - needed
 
     def retire(self, tasks: Collection[str]) -> None:
@@ -377,12 +391,6 @@ class Ledger:
             sums.cancelled += 1
         else:
             sums.lose(task, self.told_lost[task])
-
-
-def _referred_to(task: Task) -> tuple[str, ...]:
-    """The tasks that a task names."""
-    carried = () if task.delivers is None else (task.delivers,)
-    return (*task.prerequisites, *task.same_robot_as, *task.other_robot_than, *task.starts_with, *carried)
 
 
 def _out(task: Task, gone: Mapping[str, str]) -> str:

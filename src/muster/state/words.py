@@ -12,7 +12,7 @@ from typing import Any
 
 from muster.mission.stations import station_sign
 from muster.mission.texts.counting import counted
-from muster.state.reasons import was_cancelled
+from muster.state.reasons import is_no_loss, was_cancelled
 
 Data = Mapping[str, Any]
 Says = str | Callable[[Data], str]
@@ -111,13 +111,13 @@ def _other(kind: str, data: Data) -> str:
 
 
 def lost(data: Data) -> str:
-    """`task 7 is lost: no robot takes part`; of one that was cancelled that it is not done."""
-    how = "not done" if was_cancelled(data.get("reason")) else "lost"
+    """`task 7 is lost: no robot takes part`; of one that is no loss that it is not done."""
+    how = "not done" if is_no_loss(data.get("reason")) else "lost"
     return _filled(f"task {{task}} is {how}", data) + _because(data.get("reason"))
 
 
 def lost_mark(data: Data) -> str:
-    return "" if was_cancelled(data.get("reason")) else ALARM
+    return "" if is_no_loss(data.get("reason")) else ALARM
 
 
 def missed_mark(data: Data) -> str:
@@ -272,8 +272,8 @@ def _command(data: Data) -> str:
 
 def _report(data: Data) -> str:
     """`report: 7 tasks done, 1 cancelled, 120.0 s`."""
-    cancelled = sum(was_cancelled(one["reason"]) for one in data["tasks_lost"])
-    gone = {"lost": len(data["tasks_lost"]) - cancelled, "cancelled": cancelled}
+    reasons = [one["reason"] for one in data["tasks_lost"]]
+    gone = {"lost": len(reasons) - sum(map(is_no_loss, reasons)), "cancelled": sum(map(was_cancelled, reasons))}
     told = "".join(f", {count} {words}" for words, count in gone.items() if count)
     return f"report: {counted(len(data['tasks_done']), 'task')} done{told}, {data['mission_time_s']:.1f} s"
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from muster.motion.grid import Floats
 from muster.state import ExecutionEvent
-from muster.state.reasons import was_cancelled
+from muster.state.reasons import is_no_loss
 from muster.state.words import DETAIL
 
 Picture = npt.NDArray[np.uint8]
@@ -30,7 +30,7 @@ _LONGEST = 64
 
 def caption(told: ExecutionEvent) -> str | None:
     """An event in a few words, such as `r_0 has done task 7`; None for events that are visible in the film."""
-    if told.kind in _NOT_TOLD or told.mark == DETAIL or was_cancelled(told.data.get("reason")):
+    if told.kind in _NOT_TOLD or told.mark == DETAIL or is_no_loss(told.data.get("reason")):
         return None
     if told.kind == "replanned":
         moved, dropped = len(told.data.get("moved", ())), len(told.data.get("dropped", ()))

@@ -38,7 +38,7 @@ from muster.running.fleet_registry import FLEETS, settings_class
 from muster.running.observed_run import ObservedRun
 from muster.running.run_request import REAL, RunRequest
 from muster.running.wall_time import notes_on_start, planned_from, require_time_left
-from muster.state.reasons import was_cancelled
+from muster.state.reasons import is_no_loss
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
@@ -288,7 +288,7 @@ def reported(
         print_report(figures, mission, with_tasks=options.verbose)
     if halt.is_set():
         click.echo(f"interrupted at {report.mission_time_s:.1f} s of the mission; {left}", err=True)
-    lost = [task for task, reason in report.tasks_lost if not was_cancelled(reason)]
+    lost = [task for task, reason in report.tasks_lost if not is_no_loss(reason)]
     if lost and not halt.is_set():
         click.echo(f"{counted(len(lost), 'task')} lost: {sequence(lost)}", err=True)
     show_final_states(final_states, asks=halt.is_set() or bool(lost))

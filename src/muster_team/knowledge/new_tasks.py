@@ -42,12 +42,6 @@ def task_of(content: bytes) -> Task:
     return task
 
 
-def names_in(task: Task) -> tuple[str, ...]:
-    """The tasks that a task refers to."""
-    tied = (*task.prerequisites, *task.same_robot_as, *task.other_robot_than, *task.starts_with, *task.either_or)
-    return (*tied, *((task.delivers,) if task.delivers else ()))
-
-
 def with_tasks(problem: Problem, contents: Sequence[bytes]) -> Problem:
     """The problem with more tasks after its own: ties go to the tasks that were there before.
 

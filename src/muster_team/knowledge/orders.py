@@ -12,10 +12,11 @@ from dataclasses import dataclass, field, replace
 
 from muster.mission.errors import MissionError
 from muster.mission.model import Task
+from muster.mission.task_relations import names_in
 from muster.mission.value_types import shown
 from muster_team.knowledge.facts import in_order
 from muster_team.knowledge.messages import ORDERS, Fact
-from muster_team.knowledge.new_tasks import names_in, task_of
+from muster_team.knowledge.new_tasks import task_of
 from muster_team.knowledge.rules import Rules
 from muster_team.knowledge.verdicts import TAKEN, Refused, Taken, Verdict, Waits
 

@@ -7,7 +7,7 @@ import pytest
 from tests.disturbances.goods.trial import trial
 
 SEEDS = range(50)
-FEW = (0, 1, 4, 12, 28, 41)
+FEW = (0, 12, 28, 37)
 """Seeds of the short form; together they have every kind of event."""
 
 
@@ -24,5 +24,8 @@ def test_missions_with_goods_and_batteries_are_carried_out_whatever_happens(seed
         "station_returns",
         "robot_fails",
         "new_task",
+        "alternatives done",
+        "times on board limited",
+        "calls at stations for some",
     ):
         assert counts[kind] > 0, kind

@@ -7,6 +7,7 @@ from muster.mission.goods import by_commodity
 from muster.planning.options import PlanningOptions
 from muster.running.simulation import Simulation
 from tests import trials
+from tests.disturbances.further import check_further_rules, with_further_rules
 from tests.disturbances.goods.missions import drain_of, mission_of
 
 ENDS_S = 3_000.0
@@ -87,7 +88,7 @@ def trial(seed):
     """Carry the mission of a seed out."""
     report = Report(seed)
     with report.trying():
-        mission = mission_of(seed)
+        mission = with_further_rules(mission_of(seed), seed)
         plan = muster.solve(mission, seed=seed, iterations=100)
         options = PlanningOptions(parameters={})
         drain = drain_of(mission, seed)
@@ -103,6 +104,7 @@ def trial(seed):
             report.story += [f"{e.time_s:8.2f} {e.kind} {dict(e.data)}" for e in simulation.events]
         report.counts["missions"] += 1
         _check(report, mission, simulation, watcher)
+        check_further_rules(report, simulation._executor)
     report.failures = list(dict.fromkeys(report.failures))
     return report
 

@@ -6,6 +6,7 @@ It shares no code with planning and execution but the times of legs.
 from itertools import combinations, permutations
 from math import dist, inf
 
+from muster.mission.task_relations import alternatives_of
 from muster.motion.leg_times import LegTimes
 
 MARGIN_S = 1.0
@@ -15,8 +16,10 @@ MARGIN_S = 1.0
 def still_possible(executor, lost):
     """The lost tasks, with those that begin together, that robots could do from now on, each with such a team."""
     ledger = executor.ledger
+    stand_ins = {name: names for names in alternatives_of(ledger.tasks.values()) for name in names}
     for unit in _units(ledger.tasks.values()):
-        if all(task.id in lost and task.id not in ledger.cancelled for task in unit):
+        others = {name for task in unit for name in stand_ins.get(task.id, ())} - {task.id for task in unit}
+        if others.isdisjoint(ledger.ends_s) and all(t.id in lost and t.id not in ledger.cancelled for t in unit):
             teams = next((teams for teams in _teams(executor, unit) if _in_time(executor, unit, teams)), None)
             if teams is not None:
                 yield {task.id: [robot.id for robot in team] for task, team in zip(unit, teams, strict=True)}
@@ -36,7 +39,13 @@ def _teams(executor, unit):
     """Teams for the tasks of a unit, without a common robot."""
     crew = [state for state in executor.crew.values() if not state.out]
     # Of robots with a least number of tasks the plan may have had none, as they would not have had enough.
-    yield from _teams_of(executor, unit, [one.robot for one in crew if len(one.done) + 1 >= one.robot.min_tasks])
+    yield from _teams_of(executor, unit, [one.robot for one in crew if _is_free(one)])
+
+
+def _is_free(state):
+    """Whether nothing is asked of the whole route of a robot; one that rests, or is under way for too long, is not."""
+    robot = state.robot
+    return len(state.done) + 1 >= robot.min_tasks and not robot.shifts_s and robot.longest_duty_s is None
 
 
 def _teams_of(executor, unit, robots):

@@ -11,6 +11,7 @@ from muster.execution.replanning.travel import travel_of
 from muster.execution.reports.report import report_of
 from muster.mission.task_relations import units_of
 from tests import trials
+from tests.disturbances.further import check_further_rules, with_further_rules
 from tests.disturbances.stability import Stability
 from tests.disturbances.timed.missions import mission_of, with_members_failing
 from tests.disturbances.timed.still_possible import covers, still_possible
@@ -49,7 +50,7 @@ def trial(seed):
     """Carry the mission of a seed out."""
     report = Report(seed)
     with report.trying():
-        mission = mission_of(seed)
+        mission = with_further_rules(mission_of(seed), seed)
         first, replan = _planners(mission, seed)
         plan = muster.solve(mission, first, seed=seed, **PLANNERS[first])
         mission = with_members_failing(mission, plan, seed)
@@ -63,6 +64,7 @@ def trial(seed):
         report.counts.update({event.kind: 1 for event in executor.events})
         report.counts["missions"] += 1
         _check(report, executor)
+        check_further_rules(report, executor)
     return report
 
 

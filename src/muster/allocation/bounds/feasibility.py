@@ -114,7 +114,7 @@ def _reason(problem: Problem, limits: Limits, i: int, j: int, befores: Sequence[
 
 
 def _excluded(problem: Problem, cause: Cause, i: int, j: int, least: float, befores: Sequence[str]) -> Reason:
-    """What excluded a pair, as the rule says it that did.
+    """What excluded a pair, as the rule says it that gave the bound, or the one that did.
 
     Of a rule that looks at teams it may be no more than that what comes before the task is lost: that is said first.
     """
@@ -123,9 +123,12 @@ def _excluded(problem: Problem, cause: Cause, i: int, j: int, least: float, befo
     for before, other in itertools.product(lost, problem.rules):
         if other.about_one and (detail := other.never(problem, i, j, Outlook(cause.limits, least, before))) is not None:
             return Reason(robot, other.word, detail)
-    found = (rule.never(problem, i, j, Outlook(cause.limits, least, before)) for before in befores)
+    word = rule.blamed(cause.limits, i, j)
+    giver = next((one for one in problem.rules if one.word == word), rule)
+    tried = itertools.product((giver, rule), befores)
+    found = (one.never(problem, i, j, Outlook(cause.limits, least, before)) for one, before in tried)
     detail = next((text for text in found if text is not None), "no plan in which it does the task keeps the rule")
-    return Reason(robot, rule.blamed(cause.limits, i, j), detail)
+    return Reason(robot, word, detail)
 
 
 def usable_pairs(problem: Problem, least: Floats | None = None) -> Bools:

@@ -38,6 +38,7 @@ from muster.running.coordination import COORDINATIONS, Coordination
 from muster.running.observed_run import ObservedRun
 from muster.running.run_outputs import BegunOutput
 from muster.running.run_request import SIMULATED, RunRequest
+from muster.state.reasons import has_stand_in
 
 if TYPE_CHECKING:
     from muster.running.localisation import Localise
@@ -140,7 +141,8 @@ def command(
     if interrupted_s is not None:
         click.echo(f"interrupted at {interrupted_s:.1f} s of the mission", err=True)
     return exit_code_if(
-        (Ending.INTERRUPTED, interrupted_s is not None), (Ending.LEFT_OUT, asked.require_complete and report.tasks_lost)
+        (Ending.INTERRUPTED, interrupted_s is not None),
+        (Ending.LEFT_OUT, asked.require_complete and not all(has_stand_in(reason) for _, reason in report.tasks_lost)),
     )
 
 

@@ -158,7 +158,7 @@ bool UnitGreedy::evaluate_all_again() {
 
 void UnitGreedy::step_done(const std::vector<int>& placed) {
   ++step_;
-  forget_present();
+  forget_settled();
   mark_changes();
   for (const Entry& entry : std::exchange(refused_, {})) queue_.push(entry);
   if (thorough_) {
@@ -174,9 +174,10 @@ void UnitGreedy::step_done(const std::vector<int>& placed) {
   for (const int unit : std::exchange(marked_units_, {})) changed_units_[unit] = 0;
 }
 
-void UnitGreedy::forget_present() {
+// Units that are in routes, or never will be, as others are there in their place.
+void UnitGreedy::forget_settled() {
   std::erase_if(ready_, [&](int unit) {
-    if (!roster_.present(unit)) return false;
+    if (!roster_.present(unit) && !roster_.barred(unit)) return false;
     kept_[unit].found = false;
     return true;
   });

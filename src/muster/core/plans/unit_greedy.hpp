@@ -45,7 +45,7 @@ class UnitGreedy {
   int first_of(int unit) const;
   bool is_plain(int unit) const;
   void await(int unit);
-  void forget_present();
+  void forget_settled();
 
   void evaluate(int unit, bool everywhere);
   void evaluate_changed(int unit);

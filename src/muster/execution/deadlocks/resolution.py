@@ -61,7 +61,7 @@ class Deadlocks:
         given_up = False
         for task in dict.fromkeys(tasks):
             wait = self._beginning.wait(task, now)
-            if wait is not None and task not in self._ledger.expired:
+            if wait is not None and task not in self._ledger.barred:
                 rule = {"start": "relation"}.get(wait.cause, wait.cause)
                 reason = f"{rule}: {wait.words}; no new plan brings that about"
                 self._ask(Standstill(task=task, words=wait.words, given_up=reason))
@@ -74,7 +74,7 @@ class Deadlocks:
         if self._tried_left_out_at == ended or any(state.route for state in self._present):
             return []
         self._tried_left_out_at = ended
-        worth = set(left_out) - self._ledger.expired.keys()
+        worth = set(left_out) - self._ledger.barred.keys()
         return [task.id for task in self._ledger.open if task.id in worth]
 
 

@@ -25,6 +25,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.plan import RouteStop, Unassigned, teams_of
 from muster.mission.system.clock import VirtualClock
 from muster.model.problem import Problem
+from muster.model.rules.team import by_so_many
 from muster.state.reasons import in_one_line, reasons_in_one_line
 
 RobotsOf = Mapping[int, frozenset[int]]
@@ -207,13 +208,12 @@ def _robots_of(problem: Problem, routes: Routes) -> RobotsOf:
 
 def _locked(problem: Problem, robots_of: RobotsOf, free: frozenset[int]) -> Problem:
     """The problem in which tasks that have a robot or a team keep it, but for some."""
-    tasks = tuple(
-        replace(task, only_robots=tuple(problem.robots[i].id for i in sorted(robots_of[j])))
-        if j in robots_of and j not in free
-        else task
-        for j, task in enumerate(problem.tasks)
-    )
-    return replace(problem, tasks=tasks)
+    tasks = list(problem.tasks)
+    for j, robots in robots_of.items():
+        if j not in free:
+            only = tuple(problem.robots[i].id for i in sorted(robots))
+            tasks[j] = replace(by_so_many(tasks[j], len(robots)), only_robots=only)
+    return replace(problem, tasks=tuple(tasks))
 
 
 def _spared(problem: Problem, routes: Routes) -> dict[int, float]:
@@ -241,7 +241,7 @@ def first_ahead(
     problem = remaining_problem(rest, travel).problem
     routes = routes_before(problem, rest)
     return {
-        robot.id: route_ahead(problem, i, _with_stations(problem, routes[i], planned.get(robot.id, ())))
+        robot.id: route_ahead(problem, i, _with_stations(problem, i, routes[i], planned.get(robot.id, ())))
         for i, robot in enumerate(problem.robots)
     }
 
@@ -251,10 +251,13 @@ def usage_ahead(rest: RemainingMission, travel: Travel) -> dict[str, dict[str, f
     return {robot: one.usage for robot, one in first_ahead(rest, travel, {}).items()}
 
 
-def _with_stations(problem: Problem, route: Sequence[int], planned: Sequence[RouteStop]) -> list[RouteStop]:
-    """The stops of a route, with the stations that a plan has after those of its tasks that are done."""
+def _with_stations(problem: Problem, i: int, route: Sequence[int], planned: Sequence[RouteStop]) -> list[RouteStop]:
+    """The stops of a route, with the stations that a plan has after those of its tasks that are done.
+
+    The robot calls at none that is not for it.
+    """
     left = {problem.tasks[j].id for j in route}
-    there = {station.id for station in problem.stations}
+    there = {station.id for k, station in enumerate(problem.stations) if problem.model.may_call(i, k)}
     over = max((k for k, stop in enumerate(planned, 1) if not (stop.is_station or stop.name in left)), default=0)
     ahead = [stop for stop in planned[over:] if stop.name in (there if stop.is_station else left)]
     met = {stop.name for stop in ahead}

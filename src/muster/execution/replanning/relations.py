@@ -63,15 +63,15 @@ def _why_not_by(task: str, ledger: Ledger, robots: Sequence[Robot]) -> str:
     return "" if size == len(robots) else f"and {size} must do it"
 
 
-def as_bound(task: Task, binding: Binding, ledger: Ledger) -> Task:
+def as_bound(task: Task, binding: Binding, ledger: Ledger, ends_s: Mapping[str, float]) -> Task:
     """A task as it is bound by those that have begun.
 
     One free in the number of its robots that is done by the same as another is done by all of them, and times after
-    tasks that have ended are times by the clock.
+    tasks that end at known times are times by the clock.
     """
     if binding.only:
         task = by_so_many(task, len(binding.only))
-    spans = ledger.model.spans(task.id, ledger.ends_s).values()
+    spans = ledger.model.spans(task.id, ends_s).values()
     if not spans:
         return task
     return begun_between(task, max(earliest for earliest, _ in spans), min(latest for _, latest in spans))

@@ -22,9 +22,9 @@ from muster.mission.model import Mission, Robot, Station, Task
 from muster.mission.plan import Plan, Route
 from muster.model.energy_under_way import Held, with_held
 from muster.model.measured_energy import EnergyLeft
+from muster.model.parts import Begun
 from muster.model.problem import Problem
 from muster.model.rules.relation import tied_among
-from muster.model.rules.shift import extended, is_back_late
 from muster.model.under_way import UnderWay
 from muster.motion.port import Place
 from muster.state.reasons import begins_with, in_one_line
@@ -57,8 +57,8 @@ class RobotSnapshot:
         what it has on board then, by commodity.
     done
         what it has done by then, work under way included.
-    over_by_s
-        when its route must be over as its longest duty is then; None: it has none, or has not left its start.
+    left_s
+        when it left its start; None: it has not.
     """
 
     robot: Robot
@@ -71,7 +71,7 @@ class RobotSnapshot:
     energy: Held | None = None
     load: Mapping[str, float] = field(default_factory=dict)
     done: tuple[Task, ...] = ()
-    over_by_s: float | None = None
+    left_s: float | None = None
 
     @property
     def has_past(self) -> bool:
@@ -102,7 +102,7 @@ class RemainingMission:
     bindings
         for a task the robots that relations to tasks that have begun leave to it.
     expired
-        tasks that can never begin any more, and why.
+        tasks that can not begin any more, as things are, and why.
     stations
         those that serve.
     aboard
@@ -168,7 +168,7 @@ def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     problem = Problem.compile(mission, rest.objective, ignored=ignored)
     spots = {past[s.robot.id].id: s.spot for s in rest.crew if s.robot.id in past}
     known = travel.measured(problem, spots, {s.robot.id: s.spot for s in rest.crew})
-    problem = _delayed(rest, replace(problem, known=known))
+    problem = _delayed(rest, replace(problem, known=known, begun=_begun(rest, problem)))
     problem = _with_energy(rest, _bearable(problem, past))
     measured = {snapshot.robot.id: snapshot.measured for snapshot in rest.crew}
     energy_left = tuple(measured[robot.id] for robot in problem.robots)
@@ -190,7 +190,8 @@ def _with_energy(rest: RemainingMission, problem: Problem) -> Problem:
 def _usage_to_station(problem: Problem, i: int) -> float:
     """What robot i uses at most from the end of a route of it to the nearest station there; 0 if there is none."""
     first = len(problem.tasks) + 2 * len(problem.robots)
-    serving = [first + k for k, station in enumerate(problem.stations) if station.gives_energy]
+    stations = enumerate(problem.stations)
+    serving = [first + k for k, one in stations if one.gives_energy and problem.model.may_call(i, k)]
     ends = [problem.end(i)] if problem.robots[i].end_position is not None else range(len(problem.tasks))
     if not serving or not len(ends):
         return 0.0
@@ -219,12 +220,22 @@ def _with_energy_to_end(problem: Problem, past: Sequence[Route]) -> Problem:
     return replace(problem, robots=tuple(robots))
 
 
+def _begun(rest: RemainingMission, problem: Problem) -> tuple[Begun, ...]:
+    """What robots have begun, of which none needs to be over before it is available."""
+    known = {snapshot.robot.id: snapshot for snapshot in rest.crew}
+    return tuple(
+        Begun((from_s, known[robot.id].free_s), known[robot.id].left_s, from_s)
+        for robot in problem.robots
+        for from_s in (robot.available_from_s,)
+    )
+
+
 def _late(rest: RemainingMission, problem: Problem) -> dict[str, str]:
     """Robots whose routes would have to be over before they can be back, and why they can do no task more."""
     model = UnderWay(rest.mission, (), rest.ignored)
-    over_by_s = {one.robot.id: model.over_by_s(one.robot) for one in rest.crew}
-    back_s = zip((robot.id for robot in problem.robots), problem.model.over_by, strict=True)
-    return {robot: is_back_late(back, over_by_s[robot]) for robot, back in back_s if back > over_by_s[robot]}
+    over_s = {robot.id: begun.over_s for robot, begun in zip(problem.robots, problem.begun, strict=True)}
+    found = {one.robot.id: model.limits(one.robot).too_late(over_s[one.robot.id], 0.0, one.left_s) for one in rest.crew}
+    return {robot: f"{late}, even without it" for robot, late in found.items() if late}
 
 
 def _past(rest: RemainingMission) -> dict[str, Task]:
@@ -319,8 +330,7 @@ def _robots_for(rest: RemainingMission, task: Task) -> tuple[tuple[str, ...] | N
     """The only robots of the crew that may do a task, None: all; and why there is none, if so."""
     refused = rest.refusals.get(task.id, {})
     binding = rest.bindings.get(task.id, Binding())
-    carried = any(task.id in tasks for tasks in rest.aboard.values())
-    lock = None if "lock" in rest.ignored and not carried else task.only_robots
+    lock = task.only_robots
     if lock is None and not refused and binding == Binding():
         return None, ""
     crew = [snapshot.robot.id for snapshot in rest.crew]
@@ -356,7 +366,7 @@ def _lasting(task: Task, duration_s: float) -> Task:
 
 def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
     """The mission of which the problem is made. Travel is handed to the problem apart."""
-    mission = rest.mission
+    mission, crew = rest.mission, [snapshot.robot.id for snapshot in rest.crew]
     rules = replace(mission.rules, travel="euclidean", capacity_reserve=0.0, return_to_start=False)
     scores = mission.suitability
     return mission.at_once(
@@ -367,7 +377,7 @@ def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
         suitability=None if scores is None else {kind: {**row, SO_FAR: 1.0} for kind, row in scores.items()},
         robots=tuple(_robot(rest, snapshot) for snapshot in rest.crew),
         tasks=tuple(tasks),
-        stations=rest.stations,
+        stations=tuple(one for station in rest.stations if (one := station.for_robots(crew)) is not None),
     )
 
 
@@ -383,30 +393,14 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
     if not snapshot.has_past:
         leaves = snapshot.free_s
     available_from_s = max(0.0, leaves if snapshot.has_past else max(leaves, robot.available_from_s))
-    robot = _over_in_time(robot, snapshot, available_from_s)
     return replace(
-        extended(robot, available_from_s),
+        robot.busy(available_from_s, snapshot.free_s),
         position=snapshot.spot.point[: mission.dimensions],
         end_position=None if snapshot.home is None else snapshot.home[: mission.dimensions],
         return_to_start=False,
         work_capacity=capacity,
         load_at_start=_load_of(snapshot, rest),
     )
-
-
-def _over_in_time(robot: Robot, snapshot: RobotSnapshot, from_s: float) -> Robot:
-    """The robot from a time on, with what is left of its shifts and its duty. What it did and does stands in none."""
-    if snapshot.over_by_s is not None:
-        robot = replace(robot.until_time(snapshot.over_by_s), longest_duty_s=None)
-    if not robot.shifts_s:
-        until = robot.available_until_s
-        until = None if until is None else max(until, from_s)
-        return replace(robot, available_from_s=from_s, available_until_s=until)
-    rest = robot.from_time(snapshot.free_s)
-    if from_s >= snapshot.free_s:
-        return rest
-    left = rest.shifts_s or ((rest.available_from_s, rest.available_until_s),)
-    return rest.with_shifts(((from_s, snapshot.free_s), *left))
 
 
 def _load_of(snapshot: RobotSnapshot, rest: RemainingMission) -> Amount | None:
@@ -423,7 +417,7 @@ def _bearable(problem: Problem, past: Mapping[str, Task]) -> Problem:
 
     A robot that has no way home need not go there.
     """
-    robots = []
+    robots, begun = [], list(problem.begun)
     for i, robot in enumerate(problem.robots):
         if robot.id in past:
             j = problem.task_index[past[robot.id].id]
@@ -433,11 +427,11 @@ def _bearable(problem: Problem, past: Mapping[str, Task]) -> Problem:
             if math.isinf(home):
                 robot, home = replace(robot, end_position=None), 0.0
             least = (float(problem.work_usage(i)[j]) + home) * (1 + _ROUNDING) + _ROUNDING
-            robot = extended(robot, _back_s(problem, i, j) * (1 + _ROUNDING))
+            begun[i] = replace(begun[i], over_s=_back_s(problem, i, j) * (1 + _ROUNDING))
             if robot.work_capacity is not None and robot.work_capacity < least:
                 robot = replace(robot, work_capacity=least)
         robots.append(robot)
-    return replace(problem, robots=tuple(robots))
+    return replace(problem, robots=tuple(robots), begun=tuple(begun))
 
 
 def _back_s(problem: Problem, i: int, j: int) -> float:

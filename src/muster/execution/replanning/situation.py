@@ -14,7 +14,6 @@ from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.station_calls import with_calls
 from muster.execution.stations.slots import AT_STATION, Stations
 from muster.execution.stations.station_service import to_add
-from muster.execution.timing.duty import over_by_s
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Reason, Route, RouteStop, Unassigned
@@ -67,7 +66,8 @@ def remaining_mission_of(
 ) -> RemainingMission:
     """What is left of the mission."""
     present = [state for state in crew.values() if not state.out]
-    under_way = {state.route[0] for state in present if state.activity is Activity.WORKING}
+    at_work = {state.route[0]: now + state.work_left_s(now) for state in present if state.activity is Activity.WORKING}
+    under_way, ends_s = at_work.keys(), {**ledger.ends_s, **at_work}
     left = [task for task in ledger.open if task.id not in under_way]
     robots = {robot.id: robot for robot in mission.robots}  # also those that have an executor of their own
     robots |= {name: state.robot for name, state in crew.items()}
@@ -82,14 +82,14 @@ def remaining_mission_of(
             _snapshot(state, now, stations, load_after_work(state, ledger, goods), _done(state, ledger))
             for state in present
         ],
-        tasks=[as_bound(task, bindings[task.id], ledger) for task in transported],
+        tasks=[as_bound(task, bindings[task.id], ledger, ends_s) for task in transported],
         ended=ledger.ends_s.keys(),
         delays_s=ledger.delays_s,
         refusals=ledger.refusals,
         routes={state.robot.id: [name for name in state.route if name not in under_way] for state in present},
         former={name: ", ".join(robots) for name, robots in _former(crew, under_way).items()},
         bindings=bindings,
-        expired={**ledger.expired, **nowhere},
+        expired={**ledger.barred, **nowhere},
         stations=stations.working,
         aboard=deliveries_aboard(left, carried),
         objective=plan.objective,
@@ -133,7 +133,7 @@ def _snapshot(
         energy=_held(state, now, stations),
         load=load,
         done=done,
-        over_by_s=None if math.isinf(over_by_s(state)) else over_by_s(state),
+        left_s=state.known.left_s,
     )
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.mission.goods import by_commodity, negative
+from muster.mission.ignorable_rules import without
 from muster.mission.model import Task
 from muster.state.goods_ledger import GoodsLedger
 from muster.state.task_ledger import Ledger
@@ -61,7 +62,7 @@ def transports(
             found.append(_put_down(task, carried[name]))
         else:
             nowhere[task.id] = _why(name, ledger)
-            found.append(replace(task, delivers=None))
+            found.append(without(task, ("delivers",)))
     return found, nowhere
 
 
@@ -79,7 +80,7 @@ def _put_down(task: Task, carried: Carried) -> Task:
     """The delivery of what a robot has on board, which no other robot can do."""
     own = by_commodity(task.load)
     put_down = {name: carried.amounts.get(name, 0.0) - own.get(name, 0.0) for name in (*carried.amounts, *own)}
-    return replace(task, delivers=None, load=negative(put_down), only_robots=(carried.robot,))
+    return without(task, ("delivers",), load=negative(put_down), only_robots=(carried.robot,))
 
 
 def _why(name: str, ledger: Ledger) -> str:

@@ -196,9 +196,10 @@ class Report:
     missed
         tasks that were not begun in time.
     deadlines_missed_s, within_exceeded_s
-        by task done how long after its deadline it ended, and by how much too long after a prerequisite it began.
+        by task done how long after its deadline it ended, and by how much too long after a prerequisite, or what it
+        delivers was taken on board, it began.
     shifts_exceeded_s
-        by robot how long after its shift it was under way.
+        by robot how long after its shift, or its longest duty, it was under way.
     reallocations
         how often the rest was planned again.
     objective

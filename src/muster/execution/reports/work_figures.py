@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from muster.execution.reports.robot_report import RobotReport
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.mission.system.clock import TIME_ROUNDING_S
-from muster.model.under_way import UnderWay
 
 
 def robot_row(state: RobotState, planned: float) -> RobotReport:
@@ -17,11 +16,11 @@ def robot_row(state: RobotState, planned: float) -> RobotReport:
     return RobotReport(state.robot.id, planned, state.used, left, least, added, state.visits, state.slot_wait_s)
 
 
-def overtime_s(worked: Iterable[RobotState], model: UnderWay, now: float) -> dict[str, float]:
+def overtime_s(worked: Iterable[RobotState], now: float) -> dict[str, float]:
     """By how many seconds robots that worked were under way after they had to be back; those alone that were."""
     found = {}
     for state in worked:
-        over_by_s = model.over_by_s(state.robot)
+        over_by_s = state.limits.due_s(state.known.left_s)
         back_s = state.begun_s if state.activity is Activity.IDLE else now
         if back_s - over_by_s > TIME_ROUNDING_S:
             found[state.robot.id] = back_s - over_by_s

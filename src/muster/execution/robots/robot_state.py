@@ -15,6 +15,7 @@ from muster.execution.robots.robot_energy import RobotEnergy
 from muster.execution.robots.station_calls import Call, next_call, without_tasks
 from muster.execution.robots.task_motion import Work, path_length, place
 from muster.mission.model import Robot
+from muster.model.robot_limits import NO_LIMITS, RobotLimits
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 from muster.state.robot_events import RobotFails
@@ -59,6 +60,8 @@ class RobotState:
         at stations, on that route.
     energy
         what it holds; None: usage does not empty it.
+    limits
+        what rules ask of it, whatever it does.
     """
 
     robot: Robot
@@ -71,6 +74,7 @@ class RobotState:
     route: list[str] = field(default_factory=list)
     calls: list[Call] = field(default_factory=list)
     energy: RobotEnergy | None = None
+    limits: RobotLimits = NO_LIMITS
     station: str = ""  # where it is or goes to, on a call
     queued_s: float = 0.0  # since when it waits for a slot there, or did
     away: bool = False  # whether it waits for that where it is, not at the station
@@ -134,7 +138,7 @@ class RobotState:
 
     def rests(self, way_s: float, now: float) -> bool:
         """Whether it does not set out yet on a way of so many seconds, as a later shift lasts until its end."""
-        begins = self.robot.set_out(now, way_s)
+        begins = self.limits.set_out(now, way_s)
         if begins == math.inf or begins <= now + _ROUNDING_S:
             return False
         self.rests_until_s = begins

@@ -135,14 +135,18 @@ class EnergyWatch:
         return home is None or state.energy.level >= state.energy.drain * home
 
     def _nearest(self, state: RobotState, energy: RobotEnergy) -> tuple[Station, float] | None:
-        """The station that gives energy to which a robot uses least, and that; None: it reaches none."""
-        ways = [(self._usage(state, place(s.position)), s) for s in self.stations.working if s.gives_energy]
+        """The station that gives it energy to which a robot uses least, and that; None: it reaches none."""
+        ways = [(self._usage(state, place(s.position)), s) for s in self._open_to(state)]
         left = energy.level - TOLERANCE * energy.capacity
         near = [(usage, s) for usage, s in ways if usage is not None and energy.drain * usage <= left]
         if not near:
             return None
         usage, station = min(near, key=lambda one: (self.stations.free_slots(one[1]) <= 0, one[0], one[1].id))
         return station, usage
+
+    def _open_to(self, state: RobotState) -> list[Station]:
+        """The stations that give a robot energy."""
+        return [one for one in self.stations.working if one.gives_energy and one.id not in state.limits.closed]
 
     def _usage(self, state: RobotState, goal: Place) -> float | None:
         """What the way from where a robot is to a place uses; None where there is none."""
@@ -160,5 +164,6 @@ class EnergyWatch:
 
 def has_tasks_without_robot(ledger: Ledger, crew: Mapping[str, RobotState]) -> bool:
     """Whether there are tasks that could be done, and that no robot is to do."""
+    barred = ledger.barred
     routed = {name for state in crew.values() if not state.out for name in state.route}
-    return any(task.id not in routed and task.id not in ledger.expired for task in ledger.open)
+    return any(task.id not in routed and task.id not in barred for task in ledger.open)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.station_calls import Call
+from muster.mission.ignorable_rules import as_it_holds
 from muster.mission.model import Station
 from muster.model.energy import Refill
 from muster.state import MissionState
@@ -38,7 +39,7 @@ class Stations:
 
     @classmethod
     def of(cls, state: MissionState, crew: Mapping[str, RobotState]) -> Stations:
-        known = {station.id: station for station in state.mission.stations}
+        known = {one.id: as_it_holds(one, state.ledger.ignored) for one in state.mission.stations}
         return cls(known, crew, state.failed_stations, state.cut_off_stations)
 
     @property

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.mission.model import Robot
 from muster.mission.system.clock import TIME_ROUNDING_S
-from muster.model.rules import shift
 from muster.model.rules.prerequisite import waits_for_dependants
 from muster.model.rules.team import waits_for_team, waits_to_start_with
+from muster.model.rules.times import rounded
 from muster.model.under_way import Missed, UnderWay, Wait
 from muster.state.task_ledger import Ledger
 
@@ -45,7 +45,7 @@ class Beginning:
 
     def must_ask(self, task: str, robot: Robot) -> bool:
         """Whether a robot stops at a task before it begins: whether it may is not known when it sets out."""
-        return bool(robot.shifts_s) or self.model.is_bound(task) or self.ledger.must_be_followed(task)
+        return bool(self.model.limits(robot).spans) or self.model.is_bound(task) or self.ledger.must_be_followed(task)
 
     def wait(self, task: str, now: float) -> Wait | None:
         """Why robots must wait at a task now; None: work may begin."""
@@ -91,9 +91,10 @@ class Beginning:
             here = self.present(name)
             lasts_s = max((state.work_s for state in here), default=0.0)
             for state in here:
-                begins = state.robot.set_out(now, lasts_s)
+                begins = state.limits.set_out(now, lasts_s)
                 if begins > now + TIME_ROUNDING_S:
-                    yield Wait(shift.Shift.word, shift.waits_for_shift(state.robot.id, begins), begins)
+                    word = state.limits.words["spans"]
+                    yield Wait("shift", f"waits for {word}: {state.robot.id} works from {rounded(begins)} on", begins)
 
     def _absent(self, task: str, unit: Sequence[str]) -> Iterator[Wait]:
         for name in sorted(unit, key=lambda other: other != task):

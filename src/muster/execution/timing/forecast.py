@@ -86,6 +86,15 @@ class Forecast:
             self._legs_s[key] = travel_s(state.times, start, [Waypoint(point) for point in points])
         return self._legs_s[key]
 
+    def between_s(self, state: RobotState, first: str, last: str) -> float:
+        """The least seconds from the end of a task of a robot's route to the begin of a later one, travel and work."""
+        work, seconds = self.work(state, first), 0.0
+        for name in state.route[state.route.index(first) + 1 : state.route.index(last) + 1]:
+            seconds += 0.0 if work is None else self.leg_s(state, work.exit, name)
+            seconds += self.lasts_s(state, name) if name != last else 0.0
+            work = self.work(state, name) or work
+        return seconds
+
     def home_s(self, state: RobotState, start: Place) -> float:
         """Seconds from a place to where the robot's route ends."""
         if state.home is None:
@@ -108,15 +117,15 @@ class Forecast:
         busy_s = state.work_left_s(now) if state.activity is Activity.WORKING else 0.0
         free_s = max(now + busy_s, state.robot.available_from_s)
         legs, last = self._legs_of(state)
-        longest_s = None if state.known.left_s is not None else state.robot.longest_duty_s
         return Course(
             free_s,
             _not_begun(state),
             legs,
-            robot=state.robot,
+            robot=state.robot.id,
+            limits=state.limits,
             is_under_way=state.activity in (Activity.DRIVING, Activity.WAITING),
             home_s=self.home_s(state, last),
-            longest_s=longest_s,
+            has_left=state.known.left_s is not None,
         )
 
     def _legs_of(self, state: RobotState) -> tuple[Sequence[float], Place]:

@@ -38,7 +38,7 @@ class Outlooks:
             return Outlook(stays=True)
         if state.activity is Activity.IDLE or not state.route:
             return Outlook()
-        if state.robot.shifts_s:
+        if state.limits.spans:
             return Outlook()  # it may rest before each leg and work
         if state.activity is not Activity.WORKING and self._must_wait(state, state.route[0], state.done):
             return Outlook()

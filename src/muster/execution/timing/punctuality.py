@@ -42,7 +42,7 @@ class Punctuality:
 
     def expect(self, forecast: Forecast, now: float) -> None:
         """Note when tasks are going to begin by the routes as they are now."""
-        self._timed = self.ledger.model.is_timed or any(state.robot.shifts_s for state in self.crew.values())
+        self._timed = self.ledger.model.is_timed or any(state.limits.spans for state in self.crew.values())
         self._planned_s = (forecast.begins(now) or {}) if self._timed else {}
         self._in_time_until_s = {}
 
@@ -52,10 +52,11 @@ class Punctuality:
             return
         if self._revision != self.ledger.revision:
             self._in_time_until_s, self._revision = {}, self.ledger.revision
+        barred = self.ledger.barred
         for task in list(self.ledger.tasks.values()):
             if now <= self._in_time_until_s.get(task.id, -math.inf):
                 continue
-            if task.id in self.ledger.starts_s or task.id in self.ledger.expired or not self.ledger.is_open(task.id):
+            if task.id in self.ledger.starts_s or task.id in barred or not self.ledger.is_open(task.id):
                 continue
             missed = self.beginning.missed(task.id, now)
             if missed is None:
@@ -63,7 +64,7 @@ class Punctuality:
                 missed = self._missed_opening(task.id, now)
             if missed is not None:
                 tell = self.ask if self._is_routed(task.id) else self.emit
-                tell(MISSED[missed.rule](task=task.id, reason=missed.reason, next_s=missed.next_s))
+                tell(MISSED[missed.limit](task=task.id, reason=missed.reason, next_s=missed.next_s))
 
     def count_waits(self, seconds: float) -> None:
         """Robots have waited for so long, each for what it said last."""

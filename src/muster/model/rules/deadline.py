@@ -13,7 +13,7 @@ from muster.mission.model import Robot, Task
 from muster.model.parts import Parts
 from muster.model.rules.latest import Later, Latest
 from muster.model.rules.rule import ROUNDING, Bools, Limits, Outlook, Question, Tried, first_task
-from muster.model.rules.times import known_least, longer, moments, rounded, span
+from muster.model.rules.times import known_least, longer, moments, span
 
 
 @dataclass(frozen=True)
@@ -85,13 +85,3 @@ class Deadline(Latest):
 
     def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
         return replace(task, deadline_s=None) if task.id in begun else task
-
-
-def is_over(by_s: float) -> str:
-    """Why a task can never end in time any more."""
-    return f"deadline: {rounded(by_s)} is over"
-
-
-def would_end_late(ends_s: float, by_s: float) -> str:
-    """Why a robot cannot do a task that would end at a time."""
-    return f"deadline: would end at {ends_s:,.1f} s, after {by_s:,g} s"

@@ -72,10 +72,17 @@ class Duty(Rule):
         if math.isinf(least) or least <= longest * (1 + ROUNDING):
             return None
         takes, most = spans(least, longest)
-        return f"takes at least {takes} from its start to the end of its route, its longest duty is {most}"
+        duty = "its longest duty is" if self._is_own(problem, i) else "it may take at most"
+        return f"takes at least {takes} from its start to the end of its route, {duty} {most}"
+
+    def blamed(self, limits: Limits, i: int, j: int) -> str:
+        return limits.rules.given_by("lasts_most", i)
+
+    def _is_own(self, problem: Question, i: int) -> bool:
+        return problem.model.given_by("lasts_most", i) == self.word
 
     def broken_at(self, tried: Tried) -> str:
         return "with it no times keep every robot within its longest duty"
 
     def lifted(self, problem: Question, i: int, j: int, done: Collection[int]) -> Change | None:
-        return LongerDuty() if math.isfinite(problem.model.lasts_most[i]) else None
+        return LongerDuty() if self._is_own(problem, i) else None

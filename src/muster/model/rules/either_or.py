@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from itertools import combinations
 from typing import ClassVar
 
-from muster.mission.task_relations import alternatives_of
+from muster.mission.task_relations import IN_ITS_PLACE, alternatives_of
 from muster.model.parts import Parts
-from muster.model.rules.rule import InPlan, Question, Rule, first_task, listed
+from muster.model.rules.rule import InPlan, Question, Rule, first_task
 
 
 class EitherOr(Rule):
@@ -29,4 +29,4 @@ class EitherOr(Rule):
     def left_out(self, plan: InPlan, i: int, j: int) -> str | None:
         problem = plan.problem
         done = [problem.tasks[k].id for k in problem.model.exclusive[j] if k in plan.done]
-        return f"{listed(done)} is done in its place" if done else None
+        return f"{done[0]} is {IN_ITS_PLACE}" if done else None

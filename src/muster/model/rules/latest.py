@@ -59,8 +59,9 @@ class Latest(Rule):
         return limits.rules.given_by(primitive, i if of_robot else j) or self.word
 
     def unlimited(self, problem: Question, i: int, j: int) -> Later | None:
-        limit = self.latest(problem, i, j)
-        return self.lifts(limit, None) if math.isfinite(limit) else None
+        limit, (primitive, of_robot) = self.latest(problem, i, j), self.limits
+        is_own = problem.model.given_by(primitive, i if of_robot else j) == self.word
+        return self.lifts(limit, None) if is_own and math.isfinite(limit) else None
 
     def _excludes(self, problem: Question, limits: Limits, i: int, j: int) -> str | None:
         """That the limit is before what robot i and task j come to at the least; None: it is not."""

@@ -21,7 +21,6 @@ from muster.model.rules.rule import (
     first_task,
     listed,
 )
-from muster.model.rules.times import rounded
 
 
 class Prerequisite(Rule):
@@ -78,21 +77,6 @@ class Prerequisite(Rule):
 
     def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
         return task.waiting_for(()) if task.id in begun else task
-
-
-def waits_for(names: Collection[str]) -> str:
-    """What a robot waits for at a task before which others must end."""
-    return f"waits for {listed(names)}"
-
-
-def waits_after(before: str, until_s: float) -> str:
-    """What a robot waits for at a task that may not begin so soon after another."""
-    return f"waits for lag: {rounded(until_s)}, after {before}"
-
-
-def not_begun_within(before: str, most_s: float, ended_s: float) -> str:
-    """Why a task can never begin any more, so long after another has ended."""
-    return f"prerequisite: not begun within {rounded(most_s)} after {before}, ended at {rounded(ended_s)}"
 
 
 def waits_for_dependants(names: Collection[str]) -> str:

@@ -351,7 +351,7 @@ class Rule:
     def asks(self, problem: Question) -> Mapping[str, str | None]:
         """For each word of `asked` the place of a problem that asks for it first; None: none does.
 
-        Where nothing is said it is a robot or task with a key that the rule declares.
+        A rule is asked for what it gave first. Where nothing is said it is a robot or task with a key that it declares.
         """
         return {}
 
@@ -418,10 +418,6 @@ class Rule:
     def begun(self, task: Task, begun: Mapping[str, int]) -> Task:
         """A task without what binds it no more once some, by id, are done or begun by so many robots each."""
         return task
-
-    def outlasting(self, robot: Robot, end_s: float | None) -> Robot:
-        """The robot as it could be at work until a time; None: however long."""
-        return robot
 
     def never_used(self, mission: Mission, robot: Robot) -> str | None:
         """Why a robot of a mission does nothing, whatever the plan; None if it may do something."""

@@ -97,11 +97,6 @@ class Shift(Latest):
         own = self.over_late(tried.problem, tried.i, tried.over)
         return own or "with it the route of another robot would end after its shift"
 
-    def outlasting(self, robot: Robot, end_s: float | None) -> Robot:
-        if robot.available_until_s is None:
-            return robot
-        return with_end(robot, None if end_s is None else max(robot.available_until_s, end_s))
-
     def without_end(self, robots: tuple[Robot, ...]) -> tuple[Robot, ...]:
         return tuple(with_end(robot, None) for robot in robots)
 
@@ -110,24 +105,3 @@ def with_end(robot: Robot, until_s: float | None) -> Robot:
     """Return the robot with another end of its only shift, or of its last one."""
     last = tuple((begins, until_s) for begins, _ in robot.shifts_s[-1:])
     return replace(robot, available_until_s=until_s, shifts_s=(*robot.shifts_s[:-1], *last))
-
-
-def would_be_back_late(back_s: float, by_s: float) -> str:
-    """Why a robot cannot do a task after which it would be back at a time."""
-    return f"shift: would be back at {back_s:,.1f} s, after {by_s:,g} s"
-
-
-def is_back_late(back_s: float, by_s: float) -> str:
-    """Why a robot can do no task more."""
-    return f"shift: is done at {back_s:,.2f} s without it, its shift ends at {by_s:,.2f} s"
-
-
-def extended(robot: Robot, until_s: float) -> Robot:
-    """The robot, whose shift does not end before a time."""
-    ends_s = robot.available_until_s
-    return robot if ends_s is None or ends_s >= until_s else with_end(robot, until_s)
-
-
-def waits_for_shift(robot: str, begins_s: float) -> str:
-    """Say that a robot rests before work would be done."""
-    return f"waits for shift: {robot} works from {round(begins_s, 1):,g} s on"

@@ -13,7 +13,7 @@ from muster.mission.model import Robot, Task
 from muster.model.parts import Parts
 from muster.model.rules.latest import Later, Latest
 from muster.model.rules.rule import Bools, Limits, Outlook, Question, Tried, first_task, listed
-from muster.model.rules.times import known_least, longer, moments, reaches, rounded, span
+from muster.model.rules.times import known_least, longer, moments, reaches, span
 
 
 @dataclass(frozen=True)
@@ -124,26 +124,6 @@ def _windows(problem: Question, j: int) -> str:
         for opens, closes in problem.model.openings[j]
     )
     return f"{problem.tasks[j].id} {' or '.join(said)}"
-
-
-def waits_until(opens_s: float) -> str:
-    """What a robot waits for at a task that may not begin yet."""
-    return f"waits for window: opens at {rounded(opens_s)}"
-
-
-def is_closed(closed_s: float) -> str:
-    """Why a task can never begin any more."""
-    return f"window: closed at {rounded(closed_s)}"
-
-
-def next_opens(closed_s: float, opens_s: float) -> str:
-    """Why a task does not begin when it was meant to, and when it may instead."""
-    return f"window: closed at {closed_s:,g} s; the next is open from {opens_s:,g} s on"
-
-
-def would_be_closed(arrive_s: float) -> str:
-    """Why a robot cannot do a task at which it would arrive at a time."""
-    return f"window: would arrive at {arrive_s:,.1f} s, after it has closed"
 
 
 def begun_between(task: Task, from_s: float, until_s: float) -> Task:

@@ -25,7 +25,7 @@ from muster.report.time_charts.recorded_gantt import recorded_rows
 from muster.report.time_charts.time_marks import page_marks
 from muster.state import MissionState
 from muster.state.mission_state import OPEN
-from muster.state.reasons import was_cancelled
+from muster.state.reasons import is_no_loss, was_cancelled
 from muster.state.robots import OUT
 from muster.state.words import DETAIL
 
@@ -265,11 +265,12 @@ def _figures(recording: Recording) -> list[list[str]]:
     report = recording.report or {}
     done = report.get("tasks_done") or [event for event in recording.events if event.kind == "ends"]
     told = report.get("tasks_lost") or [event.data for event in recording.events if event.kind == "lost"]
-    cancelled = sum(was_cancelled(one.get("reason")) for one in told)
+    reasons = [one.get("reason") for one in told]
+    cancelled = sum(map(was_cancelled, reasons))
     figures = [
         ["mission time", f"{recording.duration_s:.1f} s"],
         ["tasks done", str(len(done))],
-        ["tasks lost", str(len(told) - cancelled)],
+        ["tasks lost", str(len(told) - sum(map(is_no_loss, reasons)))],
         *([["tasks cancelled", str(cancelled)]] if cancelled else []),
     ]
     for key, name, unit in _REPORTED:

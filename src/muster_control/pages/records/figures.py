@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from muster.state.reasons import was_cancelled
+from muster.state.reasons import is_no_loss, was_cancelled
 
 UNKNOWN = "not told"
 ROBOT_HEADS = ("robot", "planned", "flown", "more or less")
@@ -40,7 +40,7 @@ def task_rows(report: Mapping[str, Any]) -> list[Sequence[str]]:
 
 def lost_rows(report: Mapping[str, Any]) -> list[Sequence[str]]:
     """Each task that was lost though it was wanted, and why."""
-    return [(one["task"], one["reason"]) for one in report["tasks_lost"] if not was_cancelled(one["reason"])]
+    return [(one["task"], one["reason"]) for one in report["tasks_lost"] if not is_no_loss(one["reason"])]
 
 
 def cancelled_rows(report: Mapping[str, Any]) -> list[Sequence[str]]:
