@@ -168,8 +168,8 @@ class Run:
     Parameters
     ----------
     settings
-        `seed`, `dt_s`, `avoidance`, `traffic`, `law`, `noise`, `pose`, `localise` of a simulated world; of a bridge
-        what it needs (docs/mission-control.md).
+        `seed`, `dt_s`, `avoidance`, `traffic`, `law`, `noise`, `pose`, `localise`, `unknown`, `explore` of a simulated
+        world; of a bridge what it needs (docs/mission-control.md).
     speed
         times real time; null: as fast as possible. Of real robots always 1.
     time_s

@@ -32,6 +32,7 @@ from muster_studies.thesis_2 import THESIS_2
 from muster_studies.thesis_3_3 import THESIS_3_3
 from muster_studies.thesis_6 import THESIS_6
 from muster_studies.thesis_6_1 import THESIS_6_1
+from muster_studies.unknown import UNKNOWN
 
 Study = Repetition[Any, Any]
 """A published experiment that can be repeated."""
@@ -56,6 +57,7 @@ _IMPLEMENTATIONS: tuple[Study, ...] = (
     ROTORS,
     FLOWN,
     JAMS,
+    UNKNOWN,
     AREAS,
     NEGOTIATION,
 )

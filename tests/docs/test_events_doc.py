@@ -18,6 +18,7 @@ PARTS = {
     "robot_events": "Robots",
     "station_events": "Energy, stations and doors",
     "run_events": "The run",
+    "ground_events": "Ground without a map",
 }
 
 

@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import sys
 from dataclasses import replace
 from importlib.util import find_spec
 
@@ -14,7 +15,7 @@ import muster
 from muster.cli.main import run
 from muster.cli.options.request import option_name
 from muster.mission.errors import MusterError
-from muster.mission.model import Event, Mission, Robot, Task
+from muster.mission.model import Event, Map, Mission, Robot, Task, Zone
 from muster.mission.records import Settings, record, spec, specified
 from muster.mission.value_types import Number, Text
 from muster.mission.yaml_writer import yaml_text
@@ -58,8 +59,8 @@ VALUES = {
 
 `duty` stands for `stay` and `until_s`: a fleet that stays without an end never reports.
 """
-OTHER_FIELDS = {"speed", "accept_partial", "starts", "settings"}
-"""What is stated below: the wall clock, plans that were cut short, and real robots."""
+OTHER_FIELDS = {"speed", "accept_partial", "starts", "settings", "unknown", "explore"}
+"""What is stated below: the wall clock, plans that were cut short, real robots, and ground without a map."""
 CONFLICTS = [
     *((("world", "kinematic"), ("wind", wind)) for wind in VALUES["wind"][1:]),
     (("world", "kinematic"), ("rotor_level", True)),
@@ -196,6 +197,21 @@ def test_the_doors_answer_alike(row, plan, files, capsys):
     assert by_server(plan, row) == python
 
 
+@pytest.mark.parametrize("fields", [{"unknown": True}, {"unknown": True, "explore": True, "seed": 3}], ids=len)
+def test_the_doors_answer_alike_where_robots_have_no_map(fields, tmp_path, capsys, monkeypatch):
+    wall = Zone(polygon=((2.0, -1.0), (2.3, -1.0), (2.3, 3.0), (2.0, 3.0)), forbidden_to=("ground", "air"))
+    ground = Map(boundary=((-2.0, -2.0), (6.0, -2.0), (6.0, 6.0), (-2.0, 6.0)), zones=(wall,))
+    mission = replace(MISSION, map=ground, events=())
+    monkeypatch.setattr(sys.modules[__name__], "MISSION", mission)
+    plan = muster.solve(mission, "greedy")
+    (tmp_path / "m.yaml").write_text(yaml_text(mission), encoding="utf-8")
+    plan.save(tmp_path / "p.json")
+    python = by_python(plan, fields)
+    assert python["ground"]["driven_m"] >= python["ground"]["with_map_m"] - 0.1 > 0
+    assert by_command(tmp_path, capsys, fields) == python
+    assert by_server(plan, fields) == python
+
+
 @pytest.mark.parametrize("fields", REFUSED, ids=lambda fields: "-".join(fields))
 def test_the_doors_refuse_conflicts_alike(fields, plan, files, capsys):
     python = by_python(plan, fields)
@@ -206,6 +222,7 @@ def test_the_doors_refuse_conflicts_alike(fields, plan, files, capsys):
 WRONG = {
     "world": ("fysics", 'world: "fysics"; expected kinematic or physics or ros1 or ros2 or mavlink; did you mean'),
     "avoidance": ("orcas", 'avoidance: "orcas"; expected auto or orca or rvo or hrvo or avo or none; did you mean'),
+    "explore": (True, "explore: true; expected it together with unknown"),
     "traffic": ("fast", 'traffic: "fast"; expected auto or free or reserve'),
     "law": ("thesiss", 'law: "thesiss"; expected profile or thesis or trajectory; did you mean'),
     "dt_s": (7, "dt_s: 7; expected a finite number, at least 0.001 and at most 1"),

@@ -89,6 +89,12 @@ class Drawn:
             "usage": lambda: [1.0, 1.0],
             "waited_s": lambda: {robots[0]: 1.0},
             "services": lambda: ["unload"],
+            "cell_m": lambda: 0.5,
+            "origin": lambda: [0.0, 0.0, 0.0],
+            "size": lambda: [2, 3],
+            "runs": lambda: [[draw.choice([0, 1]), draw.choice([0, 1]), draw.choice([1, 2]), draw.choice([0, 1, 2])]],
+            "explored_m2": lambda: draw.uniform(0, 9),
+            "longer_m": lambda: draw.choice([None, 3.5]),
         }
         if name in made:
             return made[name]()

@@ -21,6 +21,13 @@ AT_DOCK = {"robot": "r_0", "station": "dock"}
     [
         ("starts", {"robot": "r_0", "task": "7"}, "r_0 begins task 7"),
         ("robot_fails", {"robot": "r_0", "reason": "no battery"}, "r_0 is out: no battery"),
+        ("way_closed", {"robot": "r_0"}, "an obstacle is in the way of r_0, which has no other"),
+        (
+            "way_closed",
+            {"robot": "r_0", "longer_m": 3.1},
+            "an obstacle is in the way of r_0, which goes round it, 3.10 m longer",
+        ),
+        ("map_grows", {"explored_m2": 12.5}, "the map grows: 12.50 m2 explored"),
         ("new_task", {"task": {"id": "new-1", "position": [1, 2]}}, "task new-1 is added"),
         ("move_task", {"task": "7", "position": [1.0, 2.5]}, "task 7 is moved to 1.00, 2.50"),
         ("contact", {"robots": ["a", "b"]}, "a, b touch each other"),

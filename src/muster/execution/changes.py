@@ -237,6 +237,13 @@ class Changes:
             if robot.activity not in (Activity.IDLE, Activity.RETURNING, *AT_STATION):
                 robot.stop(now)
 
+    def leave_way(self, robot: RobotState, now: float) -> None:
+        """Stop a robot whose way is closed; its work, too, if it is at some."""
+        if robot.activity is Activity.WORKING:
+            stop_work(self.crew, self.ledger, robot.route[0], now)
+        else:
+            robot.stop(now)
+
     def _at(self, task: str) -> list[RobotState]:
         return [robot for robot in self.crew.values() if robot.route[:1] == [task]]
 

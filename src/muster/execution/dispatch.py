@@ -246,6 +246,23 @@ class Dispatch:
         onward = self._way(state.robot, begin, goal)
         return None if onward is None else [begin, *onward]
 
+    def go_other_ways(self, state: RobotState, now: float) -> float | None:
+        """Send a robot under way to what is left of its stops by the ways that there are now.
+
+        Returns
+        -------
+        by how many metres the way is longer than it was; None where there is none, and the robot keeps its order.
+        """
+        before, ways, at = state.way_left_m, list[Sequence[Place]](), state.position
+        for stop in state.stops_left:
+            way = self._way(state.robot, at, stop.position) if ways else self.way(state, stop.position)
+            if way is None:
+                return None
+            ways.append(way)
+            at = stop.position
+        state.go_other_ways(now, ways)
+        return state.way_left_m - before
+
     def _free_place(self, state: RobotState) -> Place:
         """Where a robot is; the last place known to be free, if it stands where it cannot."""
         stands = self._way(state.robot, state.position, state.position) is not None

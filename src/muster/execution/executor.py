@@ -27,7 +27,7 @@ from muster.execution.replanning.travel import Travel, travel_of
 from muster.execution.reports.report import Account
 from muster.execution.reports.work_figures import back_s, overtime_s, planned_so_far, robot_row
 from muster.execution.robots.monitor import Limits, moves_again
-from muster.execution.robots.robot_state import Activity, RobotState
+from muster.execution.robots.robot_state import MOVING, Activity, RobotState
 from muster.execution.robots.task_motion import MotionPlanner, Way, straight
 from muster.execution.robots.work_orders import stop_work
 from muster.execution.script import Script
@@ -49,9 +49,12 @@ from muster.motion.port import RobotPort
 from muster.state import ExecutionEvent, MissionState, OtherEvent, words
 from muster.state.mission_state import AT_MOST_ONCE
 from muster.state.quantiles import Quantiles
-from muster.state.robot_events import RobotFails, RobotsFree, RobotSilent, RobotStuck
+from muster.state.robot_events import RobotFails, RobotsFree, RobotSilent, RobotStuck, WayClosed
 from muster.state.run_events import IMPROVED, EventRefused, MissionEnded, PlanAdopted, Replanned, Resumed
 from muster.state.task_events import DoneElsewhere, Lost, WorkBrokenOff
+
+MUCH_LONGER, MUCH_LONGER_M = 0.25, 2.0
+"""Share of a way, taken as longer by some metres, by which another is longer so that the rest is planned again."""
 
 
 class Executor:
@@ -284,6 +287,22 @@ class Executor:
     def plan_again(self, cause: ExecutionEvent) -> None:
         """Have the rest planned again at the next tick, because of something that is known elsewhere."""
         self._ask(cause)
+
+    def go_other_ways(self, robots: Collection[str]) -> None:
+        """Ways of robots under way turn out to be closed: they go by others, and stop where there are none.
+
+        The rest is planned again where that costs much.
+        """
+        for name in robots:
+            state = self.crew[name]
+            if state.out or state.activity not in MOVING:
+                continue
+            before_m = state.way_left_m
+            longer_m = self._dispatch.go_other_ways(state, self.now_s)
+            if longer_m is None:
+                self._changes.leave_way(state, self.now_s)
+            if longer_m is None or longer_m > MUCH_LONGER * (before_m + MUCH_LONGER_M):
+                self._ask(WayClosed(robot=name, longer_m=None if longer_m is None else round(longer_m, 3)))
 
     def end_elsewhere(self, task: str, robots: Sequence[str]) -> bool:
         """Robots have done a task, as others say; return whether that is new. Work of the crew on it continues."""

@@ -169,3 +169,7 @@ def _table(name: str, rows: Floats, columns: int) -> Floats:
 def _require(name: str, value: object, holds: bool, expected: str) -> None:
     if not holds:
         raise ParameterError(f"{name}: {value}; expected {expected}")
+
+
+LIDAR = Scanner(field_rad=math.radians(359), reach_m=12.0, step_rad=math.radians(1.0))
+"""A small lidar that looks all around, as robots have that build maps."""

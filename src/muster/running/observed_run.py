@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
 from muster.mission.errors import ParameterError
 from muster.mission.records import record
+from muster.mission.value_types import Fault, shown
 from muster.running.run_request import OPEN_FLEET, RunRequest
 
 if TYPE_CHECKING:
@@ -44,6 +45,8 @@ class ObservedRun(RunRequest):
     film : str, Path or WorldRecorder, optional
         A file (.mp4, .gif) for a film of the run, in the physics world; or a `Footage` of the mission, of which films
         and stills can be made afterwards.
+    save_map : str or Path, optional
+        A file (.yaml) for the map that robots without one have built, in the form of ROS, its image (.pgm) beside it.
     observers : sequence of Recorder
         Receive every event and state, such as `muster.report.live.FoxgloveServer`.
     on_event : callable, optional
@@ -61,12 +64,20 @@ class ObservedRun(RunRequest):
     standing: Standing | None = None
     record: str | Path | None = None
     film: str | Path | WorldRecorder | None = None
+    save_map: str | Path | None = None
     observers: Sequence[Recorder] = ()
     on_event: Callable[[ExecutionEvent], None] | None = None
     on_look: OnLook | None = None
     on_world: OnWorld | None = None
     halt: threading.Event | None = None
     wall: Clock | None = None
+
+    @classmethod
+    def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
+        """See `RunRequest`."""
+        yield from super().cross_check(values)
+        if values["save_map"] is not None and not values["unknown"]:
+            yield Fault(("save_map",), shown(str(values["save_map"])), "it together with unknown")
 
     @property
     def duty(self) -> Standing | None:

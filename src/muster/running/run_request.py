@@ -18,14 +18,14 @@ from muster.mission.value_types import Choice, Fault, Flag, Number, Path, Whole,
 from muster.mission.values.keywords import require_known
 from muster.mission.yaml_writer import plain
 from muster.motion.avoidance_names import AUTO, AVOIDANCE
-from muster.motion.laws import LAWS, PROFILE
+from muster.motion.laws import LAWS, PROFILE, TRAJECTORY
 from muster.motion.noise import CALM, NO_NOISE, Noise, Wind
 from muster.planning.options import LARGEST_SEED, PlanningOptions
 from muster.running.fleet_registry import FLEETS, checked_settings, setting_names, settings_class
 from muster.running.request_kinds import ByRobot, FleetSettings, Orders, Replanning, Rules, Sensors
 from muster.running.wall_time import STARTS
 from muster.running.worlds import WORLDS
-from muster.traffic.names import DEFAULT, TRAFFIC
+from muster.traffic.names import DEFAULT, RESERVE, TRAFFIC
 
 if TYPE_CHECKING:
     from muster.execution import Standing
@@ -147,6 +147,18 @@ class RunRequest(Settings):
         metavar="SENSOR[:KEY=VALUE,...]",
         counts=SIMULATED,
     )
+    unknown: bool = spec(
+        Flag(),
+        "robots have no map: they build it with their lidars, and plan by it; see docs/unknown-ground.md",
+        default=False,
+        counts=SIMULATED,
+    )
+    explore: bool = spec(
+        Flag(),
+        "frontiers of the map that is built become tasks; with unknown, where something is to be found they do anyway",
+        default=False,
+        counts=SIMULATED,
+    )
     starts: str = spec(
         Choice(STARTS),
         "when the mission starts: given, at its starts_at; now, when robots are ready, with all its times shifted",
@@ -233,6 +245,12 @@ class RunRequest(Settings):
         """Refuse what does not count in the world, and an end of the duty without one."""
         if values["until_s"] is not None and not values["stay"]:
             yield Fault(("until_s",), shown(values["until_s"]), "it together with stay")
+        if values["explore"] and not values["unknown"]:
+            yield Fault(("explore",), shown(True), "it together with unknown")
+        if values["unknown"] and values["traffic"] == RESERVE:
+            yield Fault(("traffic",), RESERVE, "free: ways are not known beforehand")
+        if values["unknown"] and values["law"] == TRAJECTORY:
+            yield Fault(("law",), TRAJECTORY, "profile or thesis: trajectories are rounded by the map")
         real = values["world"] not in WORLDS
         what, other = ("real robots", SIMULATED) if real else ("a simulated world", REAL)
         for f in specified(RunRequest):

@@ -66,6 +66,8 @@ def _require_possible(mission: Mission, plan: Plan | Coordination, request: Obse
     if isinstance(plan, Plan):
         plan.require_whole(accept_partial=request.accept_partial)
     elif isinstance(plan, Coordination):
+        if request.unknown:
+            raise ParameterError("unknown: true; expected a plan: without a centre robots share no map")
         plan.refuse_mission(mission)
     else:
         raise ParameterError(f"plan: {shown(plan)}; expected a Plan or a Negotiation")

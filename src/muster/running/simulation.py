@@ -8,12 +8,15 @@ import time
 from collections.abc import Collection, Sequence
 from contextlib import closing
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from muster.execution import Executor, Recorder, Status, broken_off, report_of, status_of, travel_of, way_of
+from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.mission.supported_features import require_supported
+from muster.motion.maps.ros_yaml import write_ros_map
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
@@ -25,10 +28,13 @@ from muster.running.run_request import RunRequest
 from muster.running.state_estimation import EstimatedWorld, RobotsInWorld, with_state_estimation
 from muster.running.traffic_choice import manager_for
 from muster.running.true_places import TruePlaces, with_truth
+from muster.running.unknown_ground import unknown_ground_for
 from muster.running.worlds import has_ability, world_named
 from muster.simulation import NO_NOISE, SimulatedWorld
 from muster.simulation.declaration import EXACT
 from muster.state import MissionState, OtherEvent
+from muster.state.ground_events import GroundUnknown
+from muster.traffic.names import FREE
 from muster.verification import verify
 from muster.verification.required import require_geometry, require_open_ways
 
@@ -79,15 +85,20 @@ class Simulation:
         **how: Any,
     ) -> None:
         request = ObservedRun(**how) if request is None else request
-        if begun is None:  # later each robot stands anywhere, and a leg is checked when it is sent
-            require_open_ways(mission, plan)
+        ground = self._ground = unknown_ground_for(mission, request.unknown, request.explore)
         there = mission if begun is None else begun.standing(mission)
         require_supported(mission)
         require_geometry(mission, "a simulated run")
-        robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
+        robot_paths: RobotPaths | None
+        if ground is not None:
+            mission, robot_paths = ground.mission, ground.paths
+        else:
+            robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
+            if begun is None:  # later each robot stands anywhere, and a leg is checked when it is sent
+                require_open_ways(mission, plan)
         travel, seed = travel_of(mission, robot_paths), request.seed
         manager = manager_for(
-            request.traffic,
+            request.traffic if ground is None else FREE,
             mission,
             seed=seed,
             avoidance=request.avoidance,
@@ -131,6 +142,9 @@ class Simulation:
             self._camera_search.resume(begun.bodies["found"])
         if begun is not None:
             self._true_places.resume(begun.bodies.get("done_at", ()))
+        if ground is not None:
+            self._executor.plan_again(GroundUnknown(cell_m=ground.cell_m))
+            ground.begin(self._world, self._robots.ports, self._executor)
         self._tick()
 
     @property
@@ -234,7 +248,8 @@ class Simulation:
         if self._estimated is not None:
             report = replace(report, remarks=(*report.remarks, self._estimated.remark))
         report = with_truth(with_found(report, self._camera_search), self._executor.mission, self._true_places.done)
-        return with_tracking(report, world)
+        report = with_tracking(report, world)
+        return report if self._ground is None else self._ground.with_ground(report)
 
     @property
     def status(self) -> Status:
@@ -252,6 +267,19 @@ class Simulation:
     def camera_search(self) -> CameraSearch | None:
         """What cameras see, where the mission has tags."""
         return self._camera_search
+
+    def save_map(self, file: str | Path) -> None:
+        """Write the map that robots without one have built, in the form of ROS: a file (.yaml), its image beside it.
+
+        Raises
+        ------
+        ParameterError
+            if the robots have the map.
+        """
+        if self._ground is None:
+            raise ParameterError(f"save_map: {file}; expected robots without a map")
+        seen = self._ground.ground.seen
+        write_ros_map(Path(file), seen.known, seen.occupied, seen.frame)
 
     def close(self) -> None:
         """Give back what pictures hold of the graphics library, and the thread that searches."""
@@ -278,10 +306,16 @@ class Simulation:
 
     @property
     def _look_due_s(self) -> float:
-        return math.inf if self._camera_search is None else self._camera_search.due_s
+        lidars_s = math.inf if self._ground is None else self._ground.due_s
+        return min(lidars_s, math.inf if self._camera_search is None else self._camera_search.due_s)
 
     def _look(self) -> None:
-        """Let cameras look; what they find becomes tasks, and what lies elsewhere moves those not yet done."""
+        """Let lidars and cameras look.
+
+        What cameras find becomes tasks, and what lies elsewhere moves those not yet done.
+        """
+        if self._ground is not None:
+            self._ground.look(self.time_s)
         if self._camera_search is None:
             return
         for found, event in self._camera_search.look(self.time_s):
@@ -354,4 +388,6 @@ def carry_out(
                 for event in simulation.events.since(told):
                     request.on_event(event)
                 told = simulation.events.total
+        if request.save_map is not None:
+            simulation.save_map(request.save_map)
         return simulation.result()

@@ -1,5 +1,6 @@
 """All that is known of a mission under way: typed events, and the state that is the fold of them, and nothing else."""
 
+import muster.state.ground_events
 import muster.state.robot_events
 import muster.state.run_events
 import muster.state.station_events

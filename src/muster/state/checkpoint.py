@@ -11,6 +11,7 @@ import msgspec
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.yaml_writer import plain
+from muster.state.explored_map import ExploredMap
 from muster.state.goods_ledger import GoodsLedger
 from muster.state.mission_state import MissionState
 from muster.state.orders import Orders
@@ -34,8 +35,11 @@ _KEPT: Mapping[str, Any] = {
     "left_out": dict[str, str],
     "replanned": int,
     "done_twice": dict[str, tuple[str, ...]],
+    "explored": ExploredMap | None,
 }
 """What a checkpoint has of a state, and the types, but for robots, doors and the ledger of tasks."""
+_ADDED = ("explored",)
+"""What earlier checkpoints of this format lack."""
 _DERIVED = ("mission", "ignored", "tasks", "touched", "_model")
 """What it has of the ledger otherwise, or not at all."""
 _LEDGER = {name: of for name, of in get_type_hints(Ledger, localns={"UnderWay": Any}).items() if name not in _DERIVED}
@@ -75,7 +79,8 @@ def restored(mission: Mission, checkpoint: Mapping[str, Any]) -> MissionState:
     state = MissionState(mission, tuple(checkpoint["ignored"]), own=())
     try:
         for name, of in _KEPT.items():
-            setattr(state, name, msgspec.convert(checkpoint[name], of, str_keys=True))
+            value = checkpoint.get(name) if name in _ADDED else checkpoint[name]
+            setattr(state, name, msgspec.convert(value, of, str_keys=True))
         for name, of in _LEDGER.items():
             setattr(state.ledger, name, msgspec.convert(checkpoint["ledger"][name], of, str_keys=True))
         for told in checkpoint["robots"]:

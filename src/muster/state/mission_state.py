@@ -11,6 +11,7 @@ from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.records import Record
 from muster.mission.value_types import Fault
+from muster.state.explored_map import ExploredMap
 from muster.state.goods_ledger import GoodsLedger
 from muster.state.orders import Orders
 from muster.state.robots import OUT, KnownRobot
@@ -69,6 +70,8 @@ class MissionState:
         how often the rest was planned again.
     done_twice : dict of str to tuple of str
         by task that robots which could not hear each other have begun, these robots.
+    explored : ExploredMap, optional
+        the map that robots have built, where they had none.
     """
 
     def __init__(
@@ -98,6 +101,7 @@ class MissionState:
         self.left_out: dict[str, str] = {}
         self.replanned = 0
         self.done_twice: dict[str, tuple[str, ...]] = {}
+        self.explored: ExploredMap | None = None
         self._forgets = forgets
 
     @classmethod

@@ -117,6 +117,14 @@ class RobotGoesRound(ExecutionEvent):
     round: str
 
 
+@happens("way_closed", words.way_closed, mark=words.CHANGE)
+class WayClosed(ExecutionEvent):
+    """An obstacle closes the way of a robot: it goes by another, longer by so many metres; None: there is none."""
+
+    robot: str
+    longer_m: float | None = None
+
+
 @happens("robot_makes_room", "{robot} makes room for {makes_room_for}")
 class RobotMakesRoom(ExecutionEvent):
     """A robot that has nothing to do goes off the way of another."""

@@ -133,6 +133,18 @@ def refused(data: Data) -> str:
     return f"{line}; nor can {', '.join(others)}" if others else line
 
 
+def way_closed(data: Data) -> str:
+    """`an obstacle is in the way of r_0, which goes round it, 3.10 m longer`."""
+    longer_m = data.get("longer_m")
+    how = "which has no other" if longer_m is None else _filled("which goes round it, {longer_m} m longer", data)
+    return _filled("an obstacle is in the way of {robot}", data) + f", {how}"
+
+
+def map_grows(data: Data) -> str:
+    """`the map grows: 12.50 m2 explored`."""
+    return _filled("the map grows: {explored_m2} m2 explored", data)
+
+
 def standstill(data: Data) -> str:
     """`no robot gets on: task 7 waits for 6; it is given up: ...`."""
     given_up = data.get("given_up")

@@ -155,7 +155,8 @@ class Client:
         speed
             times real time; None: as fast as possible.
         settings
-            `seed`, `dt_s`, `avoidance`, `traffic`, `law`, `noise`, `pose`, `localise`; of a bridge what it needs.
+            `seed`, `dt_s`, `avoidance`, `traffic`, `law`, `noise`, `pose`, `localise`, `unknown`, `explore`;
+            of a bridge what it needs.
         """
         body = {"plan": number_of(plan), "world": world, "speed": speed, "settings": settings}
         return RunningRun(self._connection, read(Run, self._connection.post_once("/runs", body)))

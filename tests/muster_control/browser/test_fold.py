@@ -33,6 +33,7 @@ NOT_SHOWN = {
     *("robot_runs_low", "energy_low", "robot_charged", "robot_sent_again", "robot_goes_round", "robot_makes_room"),
     *("robot_stands_aside", "waits_in_traffic", "goes_on", "traffic_jam", "final_states", "elsewhere", "robots_free"),
     *("goes_to_station", "arrives_at_station", "waits_for_slot", "service_begins", "service_ends", "event_refused"),
+    "way_closed",
 }
 """Kinds of events that change nothing of the state that pages show."""
 FOLD = """async ([script, mission, entries]) => {
@@ -48,6 +49,8 @@ FOLD = """async ([script, mission, entries]) => {
       cut_off: [...state.cutOffStations].sort(), left_out: sorted(state.leftOut), refusals: sorted(state.refusals),
       missed: sorted(state.missed, ({ reason, next }) => [reason, next]),
       lying: [...state.lying.keys()].sort(), delays: sorted(state.delays),
+      explored: state.explored && { cell: state.explored.cell, origin: state.explored.origin, rows: state.explored.rows,
+        area: state.explored.area },
       twice: sorted(state.doneTwice), forgotten: state.forgotten, replanned: state.replanned, ended: state.ended,
     });
   }).map(JSON.parse);
@@ -75,12 +78,17 @@ def known(state):
             "missed": {one.task: [one.reason, one.next_s] for one in ledger.missed},
             "lying": sorted(task for task in state.goods.lying if task not in ledger.ends_s),
             "delays": ledger.delays_s,
+            "explored": None if state.explored is None else explored(state.explored),
             "twice": state.done_twice,
             "forgotten": {how: getattr(ledger.retired, how) for how in ("done", "lost", "cancelled")},
             "replanned": state.replanned,
             "ended": state.ended_s,
         }
     )
+
+
+def explored(chart):
+    return {"cell": chart.cell_m, "origin": chart.origin, "rows": chart.rows, "area": chart.explored_m2}
 
 
 def three(position):

@@ -53,6 +53,7 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
         rows = [(*row, *_at_stations(of)) for row, of in zip(rows, report["robots"], strict=True)]
     print_table(columns, rows, title=f"{mission.name}: {_how(report)}", right=columns[1:])
     _print_figures(report, mission, unit)
+    _print_ground(report.get("ground"))
     _print_orders(report.get("orders"))
     _print_lateness(report)
     _print_traffic(report)
@@ -95,6 +96,7 @@ def _print_figures(report: Report, mission: Mission, unit: str) -> None:
     done = len(report.get("tasks_done", ())) + forgotten.get("done", 0)
     lost = len(report.get("tasks_lost", ())) + forgotten.get("lost", 0) + forgotten.get("cancelled", 0)
     came = (report.get("orders") or {}).get("taken", 0)
+    came -= (report.get("ground") or {}).get("frontiers_seen", 0)
     known = max(done + lost, len(mission.tasks) + came)  # more than these two if it was interrupted
     for name, value in (
         ("mission time", f"{number(report.get('mission_time_s'))} s"),
@@ -105,6 +107,17 @@ def _print_figures(report: Report, mission: Mission, unit: str) -> None:
         ("planned again", counted(report.get("reallocations", 0), "time")),
     ):
         click.echo(f"{name:<17} {value}")
+
+
+def _print_ground(ground: Report | None) -> None:
+    """Print what robots without a map found out, and their ways beside those with it."""
+    if not ground:
+        return
+    driven, known = ground.get("driven_m"), ground.get("with_map_m")
+    ratio = f", {driven / known:.2f} times" if driven and known else ""
+    frontiers = f", {counted(ground['frontiers'], 'frontier')} as tasks" if ground.get("frontiers") else ""
+    click.echo(f"{'explored':<17} {number(ground.get('explored_m2'))} m2{frontiers}")
+    click.echo(f"{'ways':<17} {number(driven)} m, with the map {number(known)} m{ratio}")
 
 
 def _print_orders(orders: Report | None) -> None:

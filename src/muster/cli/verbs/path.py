@@ -57,7 +57,7 @@ _FILE = click.Path(path_type=File)
     type=float,
     metavar="R",
     help="Metres: of --smooth  [default: the robot's at full speed, else 0.1], of the planner dubins  [default: 0.5],"
-    " of --unknown  [default: 0.1]",
+    " of --unknown  [default: it turns on the spot]",
 )
 @click.option(
     "--trajectory", type=_FILE, metavar="FILE", help="Write the motion along the path with its speeds (.csv)."
@@ -66,7 +66,7 @@ _FILE = click.Path(path_type=File)
     "--follow", type=click.Choice(_GUIDANCE), help="Drive the path by this law of guidance; show what is driven."
 )
 @click.option("--lookahead", type=float, metavar="M", help="Of --follow: how far ahead the target is.  [default: 0.5]")
-@click.option("--unknown", is_flag=True, help="The robot has no map: it goes by its laser.")
+@click.option("--unknown", is_flag=True, help="The robot has no map: it builds one with its laser, and goes by it.")
 @click.option(
     "--together", multiple=True, metavar="ROBOT=X,Y", help="Paths of several robots at once, each from its start."
 )
@@ -185,12 +185,16 @@ def _found(
 
 
 def _by_laser(
-    world: World | None, body: Body, ends: tuple[list[float], list[float]], turning_radius: float | None, seed: int
+    world: World | None,
+    body: Body,
+    ends: tuple[list[float], list[float]],
+    turning_radius: float | None,
+    seed: int,
 ) -> tuple[Path | NoPath, dict[str, Any]]:
-    """What a robot drives that sees the map with its laser only, 0.1 m off obstacles; it begins towards the goal."""
+    """What a robot drives that has no map, and builds one with its laser; it begins towards the goal."""
     from muster.motion.free_space import PrismSpace
     from muster.motion.paths.planner import blocked, point_of
-    from muster.simulation.unknown_obstacles import Parameters, drive, walls_of
+    from muster.simulation.unknown_obstacles import Parameters, drive
 
     if world is None:
         raise ParameterError("--unknown: the mission has no map; expected one, which the robot does not know")
@@ -202,12 +206,11 @@ def _by_laser(
     if reason is not None:
         return reason, {}
     heading = math.atan2(goal[1] - start[1], goal[0] - start[0])
-    params = Parameters(safe_m=body.radius_m + 0.1, turning_radius_m=0.1 if turning_radius is None else turning_radius)
     pose, place = (float(start[0]), float(start[1]), heading), (float(goal[0]), float(goal[1]))
-    found = drive(walls_of(world, body), pose, place, params, seed=seed)
+    found = drive(world, body, pose, place, Parameters(turning_radius_m=turning_radius), seed=seed)
     if isinstance(found, NoPath):
         return found, {}
-    return found.path, {"scans": found.scans, "edges": len(found.edges)}
+    return found.path, {"scans": found.scans, "ways": found.ways}
 
 
 def _followed(
@@ -299,8 +302,10 @@ def _print(found: Path | NoPath, mission: Mission, body: Body, planner: str, dri
 
 
 def _driving(driven: dict[str, Any]) -> str:
+    from muster.mission.texts.counting import counted
+
     if "scans" in driven:
-        return f"{driven['scans']} scans, {driven['edges']} of them with an obstacle in the way; by laser"
+        return f"{driven['scans']} scans, {counted(driven['ways'], 'way')} planned; by laser"
     if "law" not in driven:
         return bends_of(driven)
     end = "" if driven["arrived"] else ", not arrived"

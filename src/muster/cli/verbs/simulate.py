@@ -53,6 +53,7 @@ _IN_THIS_PROCESS = {
     **dict.fromkeys(coordination_parameters(), _PROCESSES),
     "ray": "a server uses no cluster",
     "found": "it keeps no pictures of cameras",
+    "save_map": "the record that it keeps has the map",
     "foxglove": "the port is one of this machine",
 }
 
@@ -70,6 +71,7 @@ class _Asked:
     plot: Path | None
     gantt: Path | None
     found: Path | None
+    save_map: Path | None
     outputs: AskedOutputs
     foxglove: int | None
     require_complete: bool
@@ -87,6 +89,12 @@ class _Asked:
 @record_option
 @drawing_options
 @click.option("--found", type=_FILE, metavar="FILE", help="Draw what cameras found (.png, .svg, .pdf).")
+@click.option(
+    "--save-map",
+    type=_FILE,
+    metavar="FILE",
+    help="Write the map that is built with --unknown as ROS has maps (.yaml, the image beside it).",
+)
 @run_output_options
 @foxglove_option
 @require_complete_option
@@ -143,12 +151,12 @@ def _request(asked: _Asked, options: PlanningOptions, how: Mapping[str, Any]) ->
     if "speed" not in how and (asked.coordination or asked.foxglove is not None):
         how = {**how, "speed": 1.0}
     rules: dict[str, Any] = {} if asked.coordination else {"ignore": options.ignore, "planning": options}
-    return ObservedRun(**how, seed=options.seed, **rules)
+    return ObservedRun(**how, seed=options.seed, save_map=asked.save_map, **rules)
 
 
 def _require_outputs(asked: _Asked, mission: MissionFile, world: str) -> None:
     """Refuse files that cannot be written, or would replace one that is read."""
-    files = (asked.record, asked.html, asked.plot, asked.gantt, *asked.outputs.files, asked.found)
+    files = (asked.record, asked.html, asked.plot, asked.gantt, *asked.outputs.files, asked.found, asked.save_map)
     require_writable(None, files, mission.files, (asked.plan, asked.start, asked.fixed))
     require_drawable(asked.plot, asked.gantt, asked.found)
     asked.outputs.require_possible(world)

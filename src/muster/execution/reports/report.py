@@ -125,6 +125,32 @@ class FoundReport:
     task: str | None
 
 
+@dataclass(frozen=True, kw_only=True)
+class GroundReport:
+    """What robots found out that had no map.
+
+    Parameters
+    ----------
+    explored_m2
+        how large the ground is that they saw to be free.
+    driven_m, with_map_m
+        what robots drove from each place to the next at which they arrived, and the shortest ways there by the true
+        map.
+    ways_closed
+        how often an obstacle appeared in the way of a robot.
+    frontiers, frontiers_seen
+        how many frontiers became tasks, and how many of those no robot had to go to, mostly as others saw what lies
+        behind; these are in no list of tasks.
+    """
+
+    explored_m2: float
+    driven_m: float
+    with_map_m: float
+    ways_closed: int
+    frontiers: int
+    frontiers_seen: int
+
+
 @dataclass(frozen=True)
 class TrafficReport:
     """For how long in all, how often and for how long at most one robot waited in traffic for another.
@@ -198,6 +224,8 @@ class Report:
     tasks_forgotten
         how many tasks done, cancelled and lost are not listed, as a standing fleet keeps its last ones alone; sums
         such as `waiting_s`, and the objective, are of all.
+    ground
+        what robots found out that had no map; None: they had it.
     remarks
         what else a person should hear of.
     """
@@ -225,6 +253,7 @@ class Report:
     traffic: tuple[TrafficReport, ...] = ()
     orders: OrdersReport | None = None
     tasks_forgotten: dict[str, int] = field(default_factory=dict)
+    ground: GroundReport | None = None
     remarks: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:

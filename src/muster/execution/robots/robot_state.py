@@ -242,6 +242,22 @@ class RobotState:
         self._order_instead(now, [*marks, *self._waypoints[done:]])
         self.went_round = went_round
 
+    def go_other_ways(self, now: float, ways: Sequence[Sequence[Place]]) -> None:
+        """Order it to pass what is left of its stops by other ways, one to each, the stop included."""
+        stops = self.stops_left
+        entry = self._waypoints[self.to_task - 1] if self.passed < self.to_task else None
+        waypoints: list[Waypoint] = []
+        for stop, way in zip(stops, ways, strict=True):
+            waypoints += [*(Waypoint(point, label=stop.label, via=True) for point in way[:-1]), stop]
+            if stop is entry:
+                self.to_task = len(waypoints)
+        self._order_instead(now, waypoints)
+
+    @property
+    def stops_left(self) -> list[Waypoint]:
+        """The way points of the last order that it has not passed, without those that only mark a way."""
+        return [waypoint for waypoint in self._waypoints[self.passed :] if not waypoint.via]
+
     def _order_instead(self, now: float, waypoints: Sequence[Waypoint]) -> None:
         """Order it to pass other way points, with the same to do as before."""
         begun = self.begun_s

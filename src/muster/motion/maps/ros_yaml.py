@@ -10,12 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numpy as np
+
 from muster.mission.errors import MissionError
 from muster.mission.reading.yaml_reader import parse_data
 from muster.mission.records import Checked, Record, findings, record, spec, specified
 from muster.mission.texts.text_files import read_text
 from muster.mission.value_types import INVALID, Choice, Fault, JsonSchema, Number, Text, shown
 from muster.mission.value_types import Path as KeyPath
+from muster.motion.grid import Bools, Grid
 
 
 @dataclass(frozen=True)
@@ -87,3 +90,35 @@ def read_ros_map(path: Path) -> RosMap:
     if faults:
         raise MissionError(findings(faults, source))
     return chart
+
+
+OCCUPIED, FREE, UNKNOWN = 0, 254, 205
+"""Shades as map_saver of ROS writes them: with its thresholds they are read as occupied, free and unknown."""
+
+
+def write_ros_map(path: Path, known: Bools, occupied: Bools, frame: Grid) -> None:
+    """Write a ROS map file, and its image (.pgm) beside it.
+
+    Parameters
+    ----------
+    path : Path
+        The file (.yaml).
+    known, occupied : ndarray of bool, shape (rows, columns)
+        Which cells were seen, and which hold an obstacle; row 0 is the lowest.
+    frame : Grid
+        Resolution and origin of the cells.
+    """
+    shades = np.where(occupied, OCCUPIED, np.where(known, FREE, UNKNOWN)).astype(np.uint8)[::-1]
+    image = path.with_suffix(".pgm")
+    image.write_bytes(f"P5\n{shades.shape[1]} {shades.shape[0]}\n255\n".encode() + shades.tobytes())
+    x, y, yaw = frame.origin
+    lines = (
+        f"image: {image.name}",
+        "mode: trinary",
+        f"resolution: {frame.resolution_m:.9g}",
+        f"origin: [{x:.9g}, {y:.9g}, {yaw:.9g}]",
+        "negate: 0",
+        "occupied_thresh: 0.65",
+        "free_thresh: 0.196",
+    )
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -20,11 +20,12 @@ from muster.report.figures.canvas import (
 )
 from muster.report.figures.fonts import Names
 from muster.report.figures.styles import ALARM, LEFT_OUT, QUIET_TEXT, TEXT, robot_style
+from muster.report.maps.explored_ground import draw_explored
 from muster.report.maps.floor import draw_map, map_corners
 from muster.report.maps.station_marks import draw_stations, station_names
 from muster.report.record import Recording
 from muster.report.route_lines import Places, places
-from muster.state.mission_state import DONE, OPEN
+from muster.state.mission_state import CANCELLED, DONE, OPEN
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,6 +74,8 @@ def outcome(recording: Recording) -> list[str]:
 def _draw(ax: Any, recording: Recording, names: Names) -> None:
     chart, spatial = recording.mission.map, recording.mission.dimensions == 3
     ground = [] if chart is None else draw_map(ax, chart, recording.image, spatial=spatial)
+    if recording.outcome.explored is not None:
+        ground += draw_explored(ax, recording.outcome.explored)
     stations = _draw_stations(ax, recording.mission, names)
     entries = [
         *_draw_tracks(ax, recording, names),
@@ -112,6 +115,8 @@ def _draw_tasks(ax: Any, recording: Recording, names: Names) -> list[tuple[Any, 
     entries = {}
     for name, task in mission_state.tasks.items():
         place, state = places([task.position], recording.mission.dimensions), mission_state.stage(name)
+        if state == CANCELLED and mission_state.explored is not None:  # frontiers that were seen by others
+            continue
         look = {"color": colors.get(state, ALARM), "markerfacecolor": TEXT if state == DONE else "white"}
         (mark,) = ax.plot(*place.T, linestyle="none", marker="o", markersize=4.5, zorder=5, gid=f"task-{name}", **look)
         entries[f"task {state}"] = mark

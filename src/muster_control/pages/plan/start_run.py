@@ -93,11 +93,15 @@ def _simulated(_: PlanEntry, __: int) -> Reading:
         traffic = _choice("Who passes first", _TRAFFIC, "auto")
         law = _choice("How robots move", _LAWS, "profile")
         seed = ui.number("Seed", value=0, min=0, precision=0).props("outlined dense").classes("full")
+        unknown = ui.checkbox("Robots have no map, and build it as they go")
+        explore = ui.checkbox("They explore all of it: frontiers become tasks").bind_visibility_from(unknown, "value")
     return lambda: {
         "avoidance": avoidance.value,
         "traffic": traffic.value,
         "law": law.value,
         "seed": int(seed.value or 0),
+        "unknown": unknown.value,
+        "explore": unknown.value and explore.value,
     }
 
 

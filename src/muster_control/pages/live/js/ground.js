@@ -8,6 +8,7 @@ import { Stage } from "muster-map/stage.js";
 import { told } from "muster-map/words.js";
 
 import { html } from "./elements.js";
+import { ExploredGround } from "./explored.js";
 import { moveWords } from "./words.js";
 
 const PULSE_MS = 1200;
@@ -15,6 +16,8 @@ const FADE_MS = 2500; // at the end of a highlight
 const RING = 11; // pixels
 
 class RunStage extends Stage {
+  explored = new ExploredGround();
+
   movable(one) {
     return this.mayMove(one);
   }
@@ -55,6 +58,7 @@ class RunStage extends Stage {
   }
 
   paintTop(context, now) {
+    this.explored.draw(context, this.view, this.team.state.explored);
     const only = this.chosen?.what === "robot" ? this.chosen.id : null;
     drawRoutes(context, this.view, this.ways(), this.places, this.theme, only);
     super.paintTop(context, now);

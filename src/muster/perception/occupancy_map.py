@@ -1,0 +1,250 @@
+"""Occupancy maps that lasers build: counts of hits and passes in the cells of a plane.
+
+A cell is occupied where beams ended in it in a share of the scans that covered it ([thrun2005], 9.2, with counts in
+place of log odds: scans of several robots are merged by addition). Of an occupied cell the mean of the points that were
+hit is kept, so that clearances are more exact than the cells are.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from muster.motion.grid import Bools, Floats, Grid, Indices
+from muster.perception.laser import Scanner
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
+
+Counts = npt.NDArray[np.int32]
+
+OCCUPIED_SHARE = 0.1
+"""Share of the scans of a cell that end in it from which the cell is occupied."""
+_INSIDE = 1e-6
+"""Metres behind the point that is hit at which its cell is looked up: what is hit lies behind the face."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """One scan.
+
+    Parameters
+    ----------
+    pose : tuple of float
+        Where the scanner takes itself to be: x, y, heading in the map frame.
+    ranges : ndarray, shape (n,)
+        Of its beams, metres; inf where a beam met nothing.
+    hits : ndarray of bool, shape (n,)
+        Which beams met an obstacle; others that end met something that moves, or that is no thing.
+    """
+
+    pose: tuple[float, float, float]
+    ranges: Floats
+    hits: Bools
+
+    @classmethod
+    def of(cls, pose: tuple[float, float, float], ranges: Floats) -> Scan:
+        """Return a scan all of whose beams that end met obstacles."""
+        return cls(pose, ranges, np.isfinite(ranges))
+
+
+@dataclass(eq=False)
+class OccupancyMap:
+    """What lasers have measured of the cells of a frame.
+
+    Parameters
+    ----------
+    frame : Grid
+        Shape, resolution and origin of the cells; which of them are blocked there does not count.
+    clearance_m : float
+        The greatest clearance of interest.
+    fills_cells : bool
+        Whether obstacles are known to fill cells of this frame, as those of an image do.
+
+    Attributes
+    ----------
+    hits, passes : ndarray
+        How many beams ended in each cell; how many scans passed it.
+    occupied : ndarray of bool
+        Which cells hold an obstacle, as far as they were seen.
+    near : ndarray of bool
+        Which cells were seen from as near as was said to count.
+    clearances : ndarray
+        From the centre of each cell to the nearest point that was hit, or, where obstacles fill cells, between the
+        squares of both; metres, inf beyond `clearance_m`.
+    """
+
+    frame: Grid
+    clearance_m: float
+    fills_cells: bool = False
+    hits: Counts = field(init=False)
+    passes: Counts = field(init=False)
+    occupied: Bools = field(init=False)
+    near: Bools = field(init=False)
+    clearances: npt.NDArray[np.float32] = field(init=False)
+    _sums: Floats = field(init=False)
+
+    def __post_init__(self) -> None:
+        shape = self.frame.shape
+        self.hits, self.passes = np.zeros(shape, dtype=np.int32), np.zeros(shape, dtype=np.int32)
+        self.occupied, self.near = np.zeros(shape, dtype=np.bool_), np.zeros(shape, dtype=np.bool_)
+        self._sums = np.zeros((*shape, 2))
+        self.clearances = np.full(shape, np.inf, dtype=np.float32)
+
+    @property
+    def known(self) -> Bools:
+        """Return which cells were seen at all."""
+        known: Bools = (self.hits > 0) | (self.passes > 0)
+        return known
+
+    def see(self, scan: Scan, scanner: Scanner, near_m: float = 0.0) -> tuple[Indices, bool]:
+        """Enter a scan; cells that it sees within `near_m` count as near.
+
+        Returns
+        -------
+        the cells (n, 2), rows and columns, that it found to be occupied and were not; and whether the map of obstacles
+        changed at all.
+        """
+        freed = self._pass(scan, scanner, near_m)
+        points, inner = _hit_points(scan, scanner)
+        columns, rows = np.floor(self.frame.to_grid(inner)).astype(np.int64).T
+        height, width = self.frame.shape
+        within = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
+        rows, columns = rows[within], columns[within]
+        np.add.at(self.hits, (rows, columns), 1)
+        np.add.at(self._sums, (rows, columns), points[within])
+        touched = np.column_stack(np.divmod(np.unique(rows * width + columns), width))
+        now = _are_occupied(self.hits[tuple(touched.T)], self.passes[tuple(touched.T)])
+        fresh = touched[now & ~self.occupied[tuple(touched.T)]]
+        self.occupied[tuple(fresh.T)] = True
+        if freed:
+            self.clearances[:] = np.inf
+            self._keep_off(np.argwhere(self.occupied))
+        else:
+            self._keep_off(fresh)
+        return fresh, freed or len(fresh) > 0
+
+    def require_clearance(self, clearance_m: float) -> None:
+        """Keep clearances up to this distance at least, from now on."""
+        if clearance_m > self.clearance_m:
+            self.clearance_m = clearance_m
+            self._keep_off(np.argwhere(self.occupied))
+
+    def points_in(self, cells: Indices) -> Floats:
+        """Return the mean points hit, (n, 2) metres in the map frame, in cells (n, 2) of rows and columns.
+
+        Where obstacles fill cells: their centres.
+        """
+        if self.fills_cells:
+            return self.centres(cells)
+        rows, columns = cells.T
+        means: Floats = self._sums[rows, columns] / self.hits[rows, columns, None]
+        return means
+
+    def nearest_m(self, place: Floats) -> float:
+        """Return the distance from a place (2,) to the nearest obstacle seen, metres; inf beyond `clearance_m`."""
+        cell_m = self.frame.resolution_m
+        reach = math.ceil(self.clearance_m / cell_m) + 1
+        column, row = np.floor(self.frame.to_grid(place[None])[0]).astype(np.int64)
+        top, left = max(0, row - reach), max(0, column - reach)
+        near = np.argwhere(self.occupied[top : max(0, row + reach + 1), left : max(0, column + reach + 1)])
+        if not len(near):
+            return math.inf
+        apart = self.frame.to_grid(self.points_in(near + np.array([top, left]))) - self.frame.to_grid(place[None])
+        return float(np.linalg.norm(self._gaps(apart, 0.5), axis=1).min() * cell_m)
+
+    def tree(self) -> KDTree:
+        """Return the obstacles' points (n, 2) as a tree that finds the nearest of them."""
+        from scipy.spatial import KDTree
+
+        return KDTree(self.points_in(np.argwhere(self.occupied)).reshape(-1, 2))
+
+    def from_line_m(self, points: Floats, cells: Indices) -> Floats:
+        """Return the distances (n,) of the obstacles in cells (n, 2) from the line through points (k, 2), metres."""
+        import shapely
+
+        line = shapely.LineString(self.frame.to_grid(points if len(points) > 1 else np.repeat(points, 2, axis=0)))
+        if self.fills_cells:
+            rows, columns = cells.T
+            obstacles = shapely.box(columns, rows, columns + 1, rows + 1)
+        else:
+            obstacles = shapely.points(self.frame.to_grid(self.points_in(cells)))
+        metres: Floats = shapely.distance(obstacles, line) * self.frame.resolution_m
+        return metres
+
+    def centres(self, cells: Indices) -> Floats:
+        """Return the centres (n, 2) of cells (n, 2) of rows and columns, metres in the map frame."""
+        return self.frame.to_map(cells[:, ::-1].astype(np.float64) + 0.5)
+
+    def _keep_off(self, cells: Indices) -> None:
+        """Take the points hit in these cells into the clearances of the cells around them."""
+        if not len(cells):
+            return
+        reach = math.ceil(self.clearance_m / self.frame.resolution_m)
+        height, width = self.frame.shape
+        steps = np.arange(-reach, reach + 1)
+        up, across = (grid.ravel() for grid in np.meshgrid(steps, steps, indexing="ij"))
+        in_cells = self.frame.to_grid(self.points_in(cells))
+        for part in np.array_split(np.arange(len(cells)), 1 + len(cells) // 1000):
+            rows, columns = cells[part, :1] + up, cells[part, 1:] + across
+            apart = np.stack([columns + 0.5 - in_cells[part, :1], rows + 0.5 - in_cells[part, 1:]], axis=-1)
+            metres = self.frame.resolution_m * np.linalg.norm(self._gaps(apart, 1.0), axis=-1)
+            within = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width) & (metres <= self.clearance_m)
+            np.minimum.at(self.clearances, (rows[within], columns[within]), metres[within].astype(np.float32))
+
+    def _gaps(self, apart: Floats, wide: float) -> Floats:
+        """Return what lies between along each axis (..., 2), in cells: between squares, where obstacles fill cells."""
+        return np.maximum(np.abs(apart) - wide, 0.0) if self.fills_cells else apart
+
+    def _pass(self, scan: Scan, scanner: Scanner, near_m: float) -> bool:
+        """Count the cells that beams passed; return whether one is occupied no more.
+
+        The centre of such a cell is nearer than both beams beside it reached, by a cell at least.
+        """
+        cell_m, (height, width) = self.frame.resolution_m, self.frame.shape
+        reached = np.where(np.isfinite(scan.ranges), scan.ranges, scanner.reach_m) / cell_m
+        column, row = self.frame.to_grid(np.array([scan.pose[:2]]))[0]
+        turned = scan.pose[2] - self.frame.origin[2]
+        across, up = reached * np.cos(turned + scanner.bearings), reached * np.sin(turned + scanner.bearings)
+        rows = np.arange(*_between(row, up, height))
+        columns = np.arange(*_between(column, across, width))
+        if not len(rows) or not len(columns):
+            return False
+        east, north = (columns + 0.5 - column).astype(np.float32), (rows + 0.5 - row).astype(np.float32)[:, None]
+        bearing = np.remainder(np.arctan2(north, east) + np.float32(math.pi - turned), np.float32(2 * math.pi))
+        beam = (bearing - np.float32(math.pi + scanner.bearings[0])) / np.float32(scanner.step_rad)
+        first = np.floor(beam).astype(np.int32)
+        least = np.concatenate([[0.0], np.minimum(reached[:-1], reached[1:]), [0.0]]).astype(np.float32)
+        away = np.hypot(east, north)
+        passed = away + 1.0 <= least[np.clip(first + 1, 0, len(least) - 1)]
+        passed |= np.maximum(np.abs(east), np.abs(north)) <= 0.5  # it stands there
+        part = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        self.passes[part] += passed
+        self.near[part] |= passed & (away <= near_m / cell_m)
+        freed = self.occupied[part] & passed
+        freed[freed] = ~_are_occupied(self.hits[part][freed], self.passes[part][freed])
+        self.occupied[part] &= ~freed
+        return bool(freed.any())
+
+
+def _are_occupied(hits: Counts, passes: Counts) -> Bools:
+    occupied: Bools = (hits > 0) & (hits >= OCCUPIED_SHARE * (hits + passes))
+    return occupied
+
+
+def _between(place: float, ends: Floats, most: int) -> tuple[int, int]:
+    """The first and the last but one of the rows or columns between a place and the ends of beams."""
+    first, last = math.floor(place + min(0.0, ends.min())), math.floor(place + max(0.0, ends.max()))
+    return max(0, first), min(most, last + 1)
+
+
+def _hit_points(scan: Scan, scanner: Scanner) -> tuple[Floats, Floats]:
+    """Return the points of obstacles that beams hit, (n, 2) in the map frame, and the same a little way on."""
+    angles = scan.pose[2] + scanner.bearings[scan.hits]
+    ahead = np.column_stack([np.cos(angles), np.sin(angles)])
+    points = np.array(scan.pose[:2]) + scan.ranges[scan.hits, None] * ahead
+    return points, points + _INSIDE * ahead

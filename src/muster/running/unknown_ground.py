@@ -1,0 +1,260 @@
+"""A team without a map: what its lidars see becomes one map, by which it plans its ways and its work.
+
+Each robot scans where it truly is, and enters what it sees where it takes itself to be. What a silent robot sees
+reaches the team when it is heard again. The map and its frontiers are the team's; the world's true map is used for what
+lidars measure, and to compare ways in the report.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from muster.execution.reports.report import GroundReport, Report
+from muster.mission.model import Map, Mission, Robot
+from muster.motion.grid import Bools, Floats, Indices
+from muster.motion.map_world import Body, World, body_of
+from muster.motion.paths.robot_paths import RobotPaths
+from muster.motion.unreachable_places import checked_world
+from muster.perception.explored_ground import CERTAIN, ExploredGround, map_to_build, ruled_world
+from muster.perception.explored_paths import ExploredPaths, require_flat
+from muster.perception.laser import LIDAR
+from muster.perception.occupancy_map import Scan
+from muster.running.exploration import Exploration, looks_m
+from muster.running.explored_cells import ShownMap
+from muster.simulation import SimulatedWorld
+from muster.state.robot_events import RobotAtEnd
+from muster.state.task_events import Arrives, Ends
+
+if TYPE_CHECKING:
+    from muster.execution import ExecutionEvent, Executor
+    from muster.motion.port import RobotPort, Telemetry
+
+LOOK_S = 0.5
+"""Seconds between two scans of a robot that moves."""
+SHOW_S = 2.0
+"""Seconds between two events that tell how the map has grown."""
+_ON_BORDER_M = 0.02
+"""From the border of a zone in which a beam ends there."""
+_APART_CELLS = 3
+"""Cells around where another robot says that it is in which hits are no obstacles."""
+
+
+@dataclass
+class _Way:
+    """What a robot has driven between places of arrival, and what that takes with the map, metres."""
+
+    at: Floats
+    driven_before_m: float
+    driven_m: float = 0.0
+    with_map_m: float = 0.0
+
+
+@dataclass
+class _Lidar:
+    """The lidar of a robot: where it scanned last, and the scans that have not reached the team."""
+
+    at: Floats = field(default_factory=lambda: np.full(2, np.inf))
+    unsent: list[Scan] = field(default_factory=list)
+
+
+class UnknownGround:
+    """The ground of a run whose robots have no map.
+
+    Parameters
+    ----------
+    mission : Mission
+        The mission with its true map.
+    explore : bool
+        Whether frontiers become tasks; of themselves they do where there are tags to be found.
+
+    Attributes
+    ----------
+    due_s : float
+        When robots scan next.
+
+    Raises
+    ------
+    ParameterError
+        If the mission has no map in the plane by which robots travel.
+    """
+
+    def __init__(self, mission: Mission, *, explore: bool) -> None:
+        require_flat(mission)
+        self._truth = checked_world(mission)
+        rules = ruled_world(self._truth)
+        radii = [robot.radius_m for robot in mission.all_robots]
+        self.ground = ExploredGround(rules, map_to_build(self._truth, radii))
+        self.paths = ExploredPaths(self.ground)
+        self.mission = without_obstacles(mission, rules)
+        self._with_map = RobotPaths(self._truth)
+        self._shown = ShownMap(self.ground)
+        self._exploration = Exploration(mission, self.ground) if explore or mission.tags else None
+        self._lidars: dict[str, _Lidar] = {}
+        self._ways: dict[str, _Way] = {}
+        self._turned = 0
+        self._told = 0
+        self._shown_s = -math.inf
+        self.due_s = -math.inf
+
+    def begin(self, world: SimulatedWorld, ports: Mapping[str, RobotPort], executor: Executor) -> None:
+        """Scan for the first time, in a world whose robots these are."""
+        self._world, self._ports, self._executor = world, ports, executor
+        self.look(world.time_s)
+
+    @property
+    def cell_m(self) -> float:
+        """The side of a cell of the map, metres."""
+        return round(self.ground.seen.frame.resolution_m, 6)
+
+    def look(self, now: float) -> None:
+        """Let robots scan if that is due, go other ways where theirs turn out to be closed, and explore."""
+        if now < self.due_s - 1e-9:
+            return
+        self.due_s = now + LOOK_S
+        self._executor.set_clock(now)
+        said = {name: port.telemetry() for name, port in self._ports.items()}
+        fresh, changed = self._scan(now, said)
+        if changed:
+            self.paths.grown()
+        closed = [name for name in self._executor.crew if len(fresh) and self._is_closed(name, fresh)]
+        self._turned += len(closed)
+        self._executor.go_other_ways(closed)
+        if self._exploration is not None:
+            self._exploration.look(self._executor, now)
+        self._measure_ways()
+        if now >= self._shown_s + SHOW_S or self._executor.done:
+            self._shown_s = now
+            if (grown := self._shown.event()) is not None:
+                self._executor.emit(grown)
+
+    def with_ground(self, report: Report) -> Report:
+        """Return a report with what was explored, and ways beside those with the map."""
+        self._measure_ways()
+        driven, known = (sum(getattr(way, name) for way in self._ways.values()) for name in ("driven_m", "with_map_m"))
+        tasks: set[str] = set() if self._exploration is None else self._exploration.tasks
+        return replace(
+            report,
+            tasks_lost=tuple((task, why) for task, why in report.tasks_lost if task not in tasks),
+            ground=GroundReport(
+                explored_m2=self._shown.explored_m2,
+                driven_m=driven,
+                with_map_m=known,
+                ways_closed=self._turned,
+                frontiers=len(tasks),
+                frontiers_seen=len(tasks - set(report.tasks_done)),
+            ),
+        )
+
+    def _scan(self, now: float, said: Mapping[str, Telemetry | None]) -> tuple[Indices, bool]:
+        """Let robots scan; return the cells that are newly occupied, and whether the map of obstacles has changed."""
+        fresh, changed = [np.empty((0, 2), dtype=np.int64)], False
+        for number, name in enumerate(self._world.ports):
+            lidar = self._lidars.setdefault(name, _Lidar())
+            place = self._world.positions[number, :2]
+            still = math.dist(place, lidar.at) < self.ground.seen.frame.resolution_m
+            if still and not lidar.unsent:
+                continue
+            heard = _is_heard(said.get(name), now, self._world.dt_s)
+            if not still:
+                lidar.at = place
+                told = said.get(name) if heard else None
+                lidar.unsent.append(self._scan_of(name, number, told, said))
+            for scan in lidar.unsent if heard else ():
+                cells, altered = self.ground.seen.see(scan, LIDAR, looks_m(self._robot(name)))
+                fresh.append(cells)
+                changed |= altered
+            if heard:
+                lidar.unsent.clear()
+        return np.concatenate(fresh), changed
+
+    def _scan_of(self, name: str, number: int, told: Telemetry | None, said: Mapping[str, Telemetry | None]) -> Scan:
+        """One scan from where the robot truly is, with the pose that it takes for its own, as far as it is heard.
+
+        Where another robot says that it is, and on the border of a zone that is closed by rule, there is no obstacle.
+        """
+        (x, y), heading = self._world.positions[number, :2], float(self._world.headings[number])
+        if told is not None:
+            (x, y), heading = told.position[:2], told.heading
+        ranges = self._world.scan(name, LIDAR)
+        scan = Scan.of((float(x), float(y), heading), ranges)
+        angles = heading + LIDAR.bearings[scan.hits]
+        ends = np.column_stack([x + ranges[scan.hits] * np.cos(angles), y + ranges[scan.hits] * np.sin(angles)])
+        is_thing = ~self._on_ruled_borders(body_of(self._robot(name)), ends)
+        margin_m = _APART_CELLS * self.ground.seen.frame.resolution_m
+        for one, other in said.items():
+            if other is not None and one != name:
+                away = np.linalg.norm(ends - other.position[:2], axis=1)
+                is_thing &= away > self._robot(one).radius_m + margin_m
+        scan.hits[scan.hits] = is_thing
+        return scan
+
+    def _on_ruled_borders(self, body: Body, places: Floats) -> Bools:
+        """Whether places (n, 2) are on the border of a zone that a body may not enter, and that is no obstacle."""
+        import shapely
+
+        image = self._truth.image
+        within_m = _ON_BORDER_M if image is None else image.resolution_m
+        on = np.zeros(len(places), dtype=np.bool_)
+        for area in self.paths.world.stopping(body, False):
+            on |= shapely.distance(area.polygon.exterior, shapely.points(places)) <= within_m
+        return on
+
+    def _robot(self, name: str) -> Robot:
+        return self._executor.crew[name].robot
+
+    def _is_closed(self, name: str, fresh: Indices) -> bool:
+        """Whether obstacles that were not known are in the way of a robot."""
+        state = self._executor.crew[name]
+        if state.out or not state.points_left:
+            return False
+        way = np.array([state.position[:2], *(point[:2] for point in state.points_left)])
+        return not self.ground.is_clear(body_of(state.robot), way, CERTAIN, fresh)
+
+    def _measure_ways(self) -> None:
+        """Compare what robots drove from arrival to arrival with the ways that the true map has."""
+        driven, places = self._world.distances_m, self._world.positions
+        for name, place in zip(self._world.ports, places, strict=True):
+            self._ways.setdefault(name, _Way(place.copy(), driven[name]))
+        events = self._executor.events
+        for event in events.since(self._told):
+            self._measure_way(event, driven)
+        self._told = events.total
+
+    def _measure_way(self, event: ExecutionEvent, driven: Mapping[str, float]) -> None:
+        names: tuple[str, ...]
+        if isinstance(event, Arrives | RobotAtEnd):
+            names = (event.robot,)
+        elif isinstance(event, Ends):
+            names = tuple(one for one in (event.robot, *event.team) if one)
+        else:
+            return
+        for name in names:
+            way, number = self._ways[name], list(self._world.ports).index(name)
+            place = self._world.positions[number].copy()
+            if not isinstance(event, Ends):
+                leg = self._with_map.leg_m(body_of(self._robot(name)), tuple(way.at[:2]), tuple(place[:2]))
+                if math.isfinite(leg):
+                    way.with_map_m += leg
+                    way.driven_m += driven[name] - way.driven_before_m
+            way.at, way.driven_before_m = place, driven[name]
+
+
+def without_obstacles(mission: Mission, rules: World) -> Mission:
+    """Return a mission whose map has its boundary, no-fly zones and doors alone."""
+    assert rules.boundary is not None
+    corners = tuple((float(x), float(y)) for x, y in rules.boundary.exterior.coords[:-1])
+    return replace(mission, map=Map(boundary=corners, zones=tuple(area.zone for area in rules.areas)))
+
+
+def _is_heard(said: Telemetry | None, now: float, dt_s: float) -> bool:
+    return said is not None and said.time_s >= now - dt_s / 2
+
+
+def unknown_ground_for(mission: Mission, unknown: bool, explore: bool) -> UnknownGround | None:
+    """Return the ground of a run whose robots have no map; None where they have it."""
+    return UnknownGround(mission, explore=explore) if unknown else None
