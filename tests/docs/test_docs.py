@@ -89,7 +89,7 @@ def test_every_argument_of_a_bound_is_described():
     rows = re.findall(
         r"^\| ([a-z ]+) \|", (ROOT / "docs" / "bounds.md").read_text(encoding="utf-8"), flags=re.MULTILINE
     )
-    assert set(WHY) - set(rows) == {"no tasks", "a task that nobody can do", "alternatives"}
+    assert set(WHY) - set(rows) == {"no tasks", "a task that nobody can do"}
 
 
 def test_the_outputs_of_what_can_be_done(tmp_path, monkeypatch, capsys):

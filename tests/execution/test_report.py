@@ -53,6 +53,7 @@ def test_it_prints_what_the_command_promises():
         "traffic",
         "orders",
         "tasks_forgotten",
+        "ground",
         "remarks",
     ]
     assert (data["done_twice"], data["found"], data["remarks"]) == ({}, [], [])

@@ -37,6 +37,8 @@ CAMPAIGNS = [
     Campaign(3, "campaign-auction", 1_000, 10_000),
     Campaign(6, "campaign-mixed", 500, 10_000),
     Campaign(4, "campaign-auction", 200, 2_000, "--timed {seeds} --first {first}"),
+    Campaign(2, "campaign-byzantine", 500, 10_000),
+    Campaign(8, "campaign-byzantine", 200, 1_000, "--orders {seeds} --first {first}"),
     Campaign(5, "disturbances", 1_000, 10_000),
     Campaign(6, "disturbances-timed", 200, 2_000),
     Campaign(7, "disturbances-traffic", 100, 2_000),

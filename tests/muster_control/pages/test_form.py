@@ -86,7 +86,7 @@ def test_values_of_another_form_are_shown_as_they_are():
 TEXT_ALONE = {  # what is typed on the map, in a dialogue or in the text
     *("id", "position", "entry", "exit", "end_position", "return_to_start", "skill_quality", "efficiency"),
     *("heading_deg", "kinematics", "camera", "action", "only_robots", "across_partition", "lags", "avoidance_priority"),
-    *("shifts_s", "longest_aboard_s", "either_or"),
+    *("shifts_s", "longest_aboard_s", "either_or", "within_m"),
 }
 
 
