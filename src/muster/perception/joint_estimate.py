@@ -23,9 +23,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from muster.mission.errors import ParameterError
 from muster.motion.frames import wrapped
-from muster.perception.kalman import Floats, is_expected
+from muster.perception.kalman import Floats, gain_of, is_expected
 
 X, Y, Z, HEADING, BIAS, SLIP, SKID, ROLL, PITCH = range(9)
 OWN = 9
@@ -176,13 +175,7 @@ def fixed(estimate: JointEstimate, sensor: Floats, innovation: Floats, uncertain
     """
     across = estimate.errors @ sensor.T
     spread = sensor @ across + uncertainty
-    try:
-        np.linalg.cholesky(spread)
-    except np.linalg.LinAlgError:
-        raise ParameterError(
-            f"uncertainty: {uncertainty.tolist()}; expected variance where the state itself leaves none"
-        ) from None
-    gain = np.linalg.solve(spread, across.T).T
+    gain = gain_of(across.T, spread, uncertainty)
     half = gain @ across.T
     spread_after = estimate.errors - half - half.T + gain @ spread @ gain.T  # Joseph's form, multiplied out
     spread_after = (spread_after + spread_after.T) / 2  # or rounding grows from one correction to the next

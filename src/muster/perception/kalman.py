@@ -252,16 +252,33 @@ def _taken_in(estimate: Estimate, h: Floats, innovation: Floats, uncertainty: np
     w = require_covariance("uncertainty", uncertainty, len(h))
     p = estimate.covariance
     s = _symmetric(h @ p @ h.T + w)
-    try:
-        np.linalg.cholesky(s)
-    except np.linalg.LinAlgError:
-        raise ParameterError(
-            f"uncertainty: {w.tolist()}; expected variance where the state itself leaves none to the measurement"
-        ) from None
-    gain: Floats = np.asarray(np.linalg.solve(s, h @ p).T, dtype=np.float64)
+    gain = gain_of(h @ p, s, w)
     left = np.eye(len(p)) - gain @ h
     covariance = _symmetric(left @ p @ left.T + gain @ w @ gain.T)
     return Correction(_made(estimate.mean + gain @ innovation, covariance), innovation, s, gain)
+
+
+def gain_of(seen: Floats, spread: Floats, uncertainty: Floats) -> Floats:
+    """(n, m) the Kalman gain.
+
+    Parameters
+    ----------
+    seen, spread
+        (m, n) the covariance of what is measured with the state, and (m, m) that of the innovation.
+    uncertainty
+        (m, m) of the measurement itself, for the error.
+
+    Raises
+    ------
+    ParameterError
+        if the measurement has no variance where the state leaves none.
+    """
+    try:
+        np.linalg.cholesky(spread)
+    except np.linalg.LinAlgError:
+        expected = "variance where the state itself leaves none to the measurement"
+        raise ParameterError(f"uncertainty: {uncertainty.tolist()}; expected {expected}") from None
+    return np.asarray(np.linalg.solve(spread, seen).T, dtype=np.float64)
 
 
 def _made(mean: Floats, covariance: Floats) -> Estimate:

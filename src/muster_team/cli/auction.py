@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -40,6 +40,19 @@ _OF_ONE_ROBOT = ("listen", "connect", "multicast", "memory", "key_file", "robot_
 _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", "cut")
 
 
+def _key_option(name: str, make: Callable[[Path], None], text: str) -> Callable[[Any], Any]:
+    """An option that makes a key in a new file, in place of all else."""
+
+    def callback(ctx: click.Context, _: click.Parameter, file: Path | None) -> None:
+        if file is not None and not ctx.resilient_parsing:
+            make(file)
+            ctx.exit()
+
+    return click.option(
+        name, type=_FILE, is_eager=True, expose_value=False, callback=callback, metavar="FILE", help=text
+    )
+
+
 @click.command()
 @mission_argument
 @request_options(Negotiation)
@@ -50,23 +63,11 @@ _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", 
     "--time-limit", type=Finite(0, 1e6), default=60.0, show_default=True, metavar="S", help="To agree within."
 )
 @robot_options
-@click.option(
-    "--new-key",
-    type=_FILE,
-    is_eager=True,
-    expose_value=False,
-    callback=lambda *a: _new_key(*a),
-    metavar="FILE",
-    help="Make a key for --key-file, and do nothing else.",
-)
-@click.option(
+@_key_option("--new-key", lambda file: _new_key(file), "Make a key for --key-file, and do nothing else.")
+@_key_option(
     "--new-robot-key",
-    type=_FILE,
-    is_eager=True,
-    expose_value=False,
-    callback=lambda *a: _new_robot_key(*a),
-    metavar="FILE",
-    help="Make a key for --robot-key, print its public key for --roster, and do nothing else.",
+    lambda file: _new_robot_key(file),
+    "Make a key for --robot-key, print its public key for --roster, and do nothing else.",
 )
 @simulation_options
 @require_complete_option
@@ -159,19 +160,14 @@ def _write_views(folder: Path, plans: dict[str, Plan]) -> None:
         plan.save(folder / f"{robot}.json")
 
 
-def _new_key(ctx: click.Context, _: click.Parameter, file: Path | None) -> None:
-    if file is None or ctx.resilient_parsing:
-        return
+def _new_key(file: Path) -> None:
     from muster_team.network.keys import new_key, write_key
 
     write_key(file, new_key())
     click.echo(f"{file}: a new key; give every robot a copy, and nobody else")
-    ctx.exit()
 
 
-def _new_robot_key(ctx: click.Context, _: click.Parameter, file: Path | None) -> None:
-    if file is None or ctx.resilient_parsing:
-        return
+def _new_robot_key(file: Path) -> None:
     from muster_team.network.keys import new_key, write_key
     from muster_team.network.robot_keys import public_key
 
@@ -180,4 +176,3 @@ def _new_robot_key(ctx: click.Context, _: click.Parameter, file: Path | None) ->
     write_key(file, key)
     click.echo(f"{file}: a new key, which only this robot may have", err=True)
     click.echo(public.hex())
-    ctx.exit()
