@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Point, Robot
 from muster.motion.actions import TaskMotion, plan
-from muster.motion.free_space import GridSpace, PolygonSpace
-from muster.motion.grid import Floats
-from muster.motion.map_world import World, body_of
-from muster.motion.paths import PathFinder
+from muster.motion.map_world import World
 from muster.traffic.journeys.roadmap_plan import RoadmapPlan
 from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
 from muster.traffic.roadmaps.given_lanes import ClosedLane, closed_lanes
-from muster.traffic.roadmaps.roadmap import MARGIN_M, Roadmap
+from muster.traffic.roadmaps.roadmap import MARGIN_M, Layer, Roadmap, layer_of_lanes, layer_of_space
+from muster.traffic.roadmaps.robot_sizes import same_ways, sizes
+from muster.traffic.roadmaps.robot_spaces import RobotSpaces, require_radius
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,26 +23,26 @@ class MissionRoadmap:
     Parameters
     ----------
     roadmap
-        for the widest of the robots.
+        with a layer for each size of the robots.
     robots
-        those that share it: the robots of kind `ground`, or all where none is.
+        those that share it: the robots of kind `ground`, or all where none is, that have a radius.
     point_of
-        for each place of these robots and their tasks, (x, y) metres in the map frame, the number of its point; -1
-        where no way leads there.
+        for each layer and place of its robots and their tasks, (x, y) metres in the map frame, the number of its
+        point; -1 where no way leads there.
     closed
-        the lanes of the mission that the widest robot cannot drive.
+        for each layer the lanes of the mission that its widest robot cannot drive.
+    spaces
+        the free space of each robot.
     doors
         of the mission; the roadmap is that with all of them open.
-    finder
-        of paths for the widest robot; None where there is no map.
     """
 
     roadmap: Roadmap
     robots: tuple[Robot, ...]
-    point_of: Mapping[Point, int]
-    closed: tuple[ClosedLane, ...] = ()
+    point_of: tuple[Mapping[Point, int], ...]
+    closed: tuple[tuple[ClosedLane, ...], ...]
+    spaces: RobotSpaces
     doors: RoadmapDoors = NO_DOORS
-    finder: PathFinder | None = None
 
     @classmethod
     def of(cls, mission: Mission, world: World | None = None, *, margin_m: float = MARGIN_M) -> MissionRoadmap:
@@ -58,43 +56,58 @@ class MissionRoadmap:
             as `World.of`.
         """
         robots = tuple(robot for robot in mission.robots if robot.kind == "ground") or mission.robots
-        sharing = (*robots, *(robot for robot in mission.newcomers if robot.kind == robots[0].kind))
-        widest = max(sharing, key=lambda robot: robot.radius_m)
-        if widest.radius_m <= 0:
-            raise ParameterError(
-                "radius_m: 0 for all robots; expected a robot with a radius above 0: others share any lane"
-            )
-        places = list(dict.fromkeys(place[:2] for place in _places(mission, sharing)))
-        space = None
-        if mission.map is not None and mission.has_ways_by_map:
-            world = world or World.of_travel(mission)
-            space = world.with_closed(()).free_space(widest.radius_m, widest.kind, three_d=False)
-            assert isinstance(space, GridSpace | PolygonSpace)
-        finder = None if space is None else PathFinder(space)
-        closed: list[ClosedLane] = []
-        if mission.lanes is None:
-            roadmap = Roadmap.of(space, widest.radius_m, places, margin_m=margin_m)
-        else:
-            roadmap = Roadmap.of_lanes(mission.lanes, widest.radius_m, places, space=space, margin_m=margin_m)
-            closed = closed_lanes(mission.lanes, widest.radius_m, finder)
-        doors = RoadmapDoors.of(mission, body_of(widest), world if space is not None else None)
-        point_of = dict(zip(places, roadmap.places.tolist(), strict=True))
-        return cls(roadmap, robots, point_of, tuple(closed), doors, finder)
+        kind = robots[0].kind
+        sharing = (*robots, *(robot for robot in mission.newcomers if robot.kind == kind))
+        require_radius([robot.radius_m for robot in sharing])
+        mapped = mission.map is not None and mission.has_ways_by_map
+        spaces = RobotSpaces((world or World.of_travel(mission)) if mapped else None, kind)
+        layers, places, closed = list[Layer](), list[list[Point]](), list[tuple[ClosedLane, ...]]()
+        before_m = 0.0
+        for radius_m in _sizes(mission, spaces, sharing):
+            own = [robot for robot in sharing if before_m < robot.radius_m <= radius_m]
+            places.append(list(dict.fromkeys(place[:2] for place in _places(mission, own))))
+            before_m, space = radius_m, spaces.space(radius_m)
+            if mission.lanes is None:
+                layers.append(layer_of_space(space, radius_m, places[-1], margin_m=margin_m))
+                closed.append(())
+            else:
+                layers.append(layer_of_lanes(mission.lanes, radius_m, places[-1], space=space, margin_m=margin_m))
+                closed.append(tuple(closed_lanes(mission.lanes, radius_m, spaces.finder(radius_m))))
+        roadmap = Roadmap.joined(layers, margin_m)
+        points = iter(roadmap.places.tolist())
+        point_of = tuple({place: next(points) for place in own} for own in places)
+        doors = RoadmapDoors.of(mission, kind, spaces.world)
+        return cls(roadmap, tuple(filter(_has_radius, robots)), point_of, tuple(closed), spaces, doors)
 
     def plan(self, seed: int = 0) -> RoadmapPlan:
         """What plans moves of robots on it."""
-        return RoadmapPlan(self.roadmap, self.clear, seed, self.doors)
+        return RoadmapPlan(self.roadmap, self.spaces, seed, self.doors)
 
-    def clear(self, points: Floats) -> bool:
-        """Whether the straight way along points, (n, 2) metres, is free for the widest robot."""
-        return self.finder is None or self.finder.clear(points)
-
-    def points(self, places: Iterator[Point] | list[Point]) -> list[int]:
-        """The points of places of the mission."""
-        return [self.point_of[place[:2]] for place in places]
+    def points(self, places: Iterable[Point], robot: Robot) -> list[int]:
+        """The points of places of a robot, or of its tasks."""
+        numbers = self.point_of[self.roadmap.layer_for(robot.radius_m)]
+        return [numbers[place[:2]] for place in places]
 
 
-def _places(mission: Mission, robots: tuple[Robot, ...]) -> Iterator[Point]:
+def _has_radius(robot: Robot) -> bool:
+    return robot.radius_m > 0
+
+
+def _sizes(mission: Mission, spaces: RobotSpaces, robots: Sequence[Robot]) -> tuple[float, ...]:
+    """The radii of the layers: where robots are of many, two share one that close the same lanes and gaps."""
+
+    def alike(radius_m: float, wider_m: float) -> bool:
+        if mission.lanes is not None:
+            closed = [closed_lanes(mission.lanes, one, spaces.finder(one)) for one in (radius_m, wider_m)]
+            if [lane.number for lane in closed[0]] != [lane.number for lane in closed[1]]:
+                return False
+        space, wider = spaces.space(radius_m), spaces.space(wider_m)
+        return space is None or wider is None or same_ways(space, wider)
+
+    return sizes((robot.radius_m for robot in robots), alike)
+
+
+def _places(mission: Mission, robots: Sequence[Robot]) -> Iterator[Point]:
     """Where robots start and end, and where they begin and end their tasks."""
     for robot in robots:
         yield robot.position

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,10 +11,11 @@ import numpy as np
 from muster import core
 from muster.motion.grid import Floats
 from muster.traffic.journeys.joint_journeys import JointJourneys
-from muster.traffic.journeys.roadmap_network import Network, with_places
+from muster.traffic.journeys.roadmap_network import Network, Standing, with_places
 from muster.traffic.journeys.travellers import Move, Point, Traveller
 from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
 from muster.traffic.roadmaps.roadmap import Bools, Roadmap
+from muster.traffic.roadmaps.robot_spaces import Disc, RobotSpaces
 from muster.traffic.single_moves import Parameters
 
 _THERE_M = 1e-3
@@ -38,8 +39,8 @@ class RoadmapPlan:
     ----------
     roadmap
         has points for starts and goals; a place that is none gets one.
-    clear
-        whether the straight way between two places, (2, 2) metres, is free for the widest robot.
+    spaces
+        the free space of each robot.
     seed
         of the orders that are tried.
     doors
@@ -51,7 +52,7 @@ class RoadmapPlan:
     """
 
     roadmap: Roadmap
-    clear: Callable[[Floats], bool]
+    spaces: RobotSpaces = RobotSpaces()
     seed: int = 0
     doors: RoadmapDoors = NO_DOORS
     cut_off: frozenset[int] = frozenset()
@@ -68,9 +69,9 @@ class RoadmapPlan:
         """From now on these doors are closed, and the others open."""
         self._closed, self._known = frozenset(doors), None
 
-    def is_open(self, piece: Floats) -> bool:
-        """Whether a straight way (2, 2) leads through no closed door."""
-        return bool(self.doors.open_ways(piece[np.newaxis], self._closed)[0])
+    def is_open(self, piece: Floats, radius_m: float) -> bool:
+        """See `Planner`."""
+        return bool(self.doors.open_ways(piece[np.newaxis], self._closed, radius_m)[0])
 
     def __call__(self, travellers: Sequence[Traveller]) -> list[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
@@ -82,7 +83,8 @@ class RoadmapPlan:
         """See `Planner`."""
         on = self._network_for(travellers)
         self.cut_off = frozenset(range(len(travellers)))
-        if len(travellers) * len(on.roadmap.edges) > _MOST_BY_INTERVALS:
+        edges = on.edges_by_layer
+        if sum(edges[on.standing(who, who.start).layer] for who in travellers) > _MOST_BY_INTERVALS:
             return None
         ways = _WAYS if self._priorities else _FIRST_WAYS
         shared = self._shared(on, travellers, ways)
@@ -102,7 +104,7 @@ class RoadmapPlan:
 
         `places` are others where they may have to go later.
         """
-        on = self._network_for(travellers, places)
+        on = self._network_for(travellers, [(who, place) for who in travellers for place in places])
         return JointJourneys(on, travellers, self._shared(on, travellers, ways))
 
     def reaches(self, travellers: Sequence[Traveller], number: int, places: Sequence[Point]) -> list[bool]:
@@ -110,43 +112,62 @@ class RoadmapPlan:
         from scipy.sparse import csr_matrix
         from scipy.sparse.csgraph import breadth_first_order
 
-        on, who = self._network_for(travellers, places), travellers[number]
+        who = travellers[number]
+        on = self._network_for(travellers, [(who, place) for place in places])
         free = on.roadmap.edges[self._past_fixed(on, travellers, who.robot.radius_m)]
         size = len(on.roadmap.points)
         graph = csr_matrix((np.ones(len(free)), tuple(free.T)), shape=(size, size))
-        reached = set(breadth_first_order(graph, on.number[who.start], return_predecessors=False).tolist())
-        return [on.number[place] in reached for place in places]
+        reached = set(breadth_first_order(graph, on.point(who, who.start), return_predecessors=False).tolist())
+        return [on.point(who, place) in reached or not self._no_way(travellers, who, place) for place in places]
+
+    def _no_way(self, travellers: Sequence[Traveller], who: Traveller, place: Point) -> bool:
+        """Whether it is proven that a robot which finds no way on the roadmap has none; of lanes the roadmap is all."""
+        if self.roadmap.names:
+            return True
+        radius_m, margin_m = who.robot.radius_m, self.roadmap.margin_m
+        discs = [
+            Disc(other.start, radius_m + other.robot.radius_m + margin_m)
+            for other in travellers
+            if other.fixed and other.robot.id != who.robot.id
+        ]
+        return self.spaces.separates(who.start, place, radius_m, closed=self._closed, discs=discs)
 
     def _past_fixed(self, on: Network, travellers: Sequence[Traveller], radius_m: float) -> Bools:
         """Which edges keep a robot away from those who never leave, but where it only moves away from one."""
         apart_m = np.zeros(len(on.roadmap.points))
         for other in travellers:
             if other.fixed:
-                at = on.number[other.start]
+                at = on.point(other, other.start)
                 apart_m[at] = max(apart_m[at], radius_m + other.robot.radius_m + on.roadmap.margin_m)
         edges = np.repeat(np.arange(len(on.roadmap.edges)), np.diff(on.roadmap.reach_start))
         near = on.roadmap.reach_m < apart_m[on.roadmap.reach_point]
         return np.asarray(np.bincount(edges[near], minlength=len(on.roadmap.edges)) == 0)
 
-    def _network_for(self, travellers: Sequence[Traveller], more: Sequence[Point] = ()) -> Network:
+    def _network_for(self, travellers: Sequence[Traveller], more: Sequence[tuple[Traveller, Point]] = ()) -> Network:
         """The roadmap with their places, and some more, as it was for the last plan where that has them."""
-        places = [*more, *(place for who in travellers for place in (who.start, *(stop.at for stop in who.stops)))]
-        places += [place for who in travellers if who.fixed for place in self._around(who)]
+        layer = {who.robot.radius_m: self.roadmap.layer_for(who.robot.radius_m) for who in travellers}
+        own = [(who, place) for who in travellers for place in (who.start, *(stop.at for stop in who.stops))]
+        places = [Standing(place, layer[who.robot.radius_m]) for who, place in (*more, *own)]
+        places += [
+            place for who in travellers if who.fixed for k in set(layer.values()) for place in self._around(who, k)
+        ]
         if self._known is None or not self._known.number.keys() >= set(places):
-            roadmap = with_places(self.roadmap, self.clear, places)
+            roadmap = with_places(self.roadmap, self.spaces, places)
             if self._closed:
-                roadmap = roadmap.keeping(self.doors.open_ways(roadmap.points[roadmap.edges], self._closed))
+                radii_m = roadmap.radii_m[roadmap.edge_layer]
+                roadmap = roadmap.keeping(self.doors.open_ways(roadmap.points[roadmap.edges], self._closed, radii_m))
             self._known = Network.of(roadmap)
         return self._known
 
-    def _around(self, who: Traveller) -> Iterator[Point]:
-        """Places by which others as wide get round a robot that never leaves, where there is room."""
-        radius_m = (2 * who.robot.radius_m + self.roadmap.margin_m) / math.cos(math.pi / _CORNERS) + _SPARE_M
+    def _around(self, who: Traveller, layer: int) -> Iterator[Standing]:
+        """Places by which others, of a layer, get round a robot that never leaves, where there is room."""
+        other_m = float(self.roadmap.radii_m[layer])
+        radius_m = (who.robot.radius_m + other_m + self.roadmap.margin_m) / math.cos(math.pi / _CORNERS) + _SPARE_M
         for k in range(_CORNERS):
             angle = 2 * math.pi * k / _CORNERS
             place = (who.start[0] + radius_m * math.cos(angle), who.start[1] + radius_m * math.sin(angle))
-            if self.clear(np.array([place, place])):
-                yield place
+            if self.spaces.clear(np.array([place, place]), other_m):
+                yield Standing(place, layer)
 
     def _shared(self, on: Network, travellers: Sequence[Traveller], ways: int) -> core.SharedWays:
         """Ways of all: in the order of the last plan, and who was not in it after the others, from far away first."""
@@ -160,12 +181,12 @@ class RoadmapPlan:
     def _by_inheritance(self, travellers: Sequence[Traveller]) -> list[Move]:
         """To first stops, as far as the horizon."""
         on = self._network_for(travellers)
-        first = {on.number[who.start]: k for k, who in reversed(list(enumerate(travellers)))}
+        first = {on.point(who, who.start): k for k, who in reversed(list(enumerate(travellers)))}
         numbers = sorted(first.values())  # without those who are only thought to be where another is
         there = [travellers[k] for k in numbers]
-        goals = [on.number[who.stops[0].at] if who.stops else None for who in there]
+        goals = [on.point(who, who.stops[0].at) if who.stops else None for who in there]
         found = on.planner.planned(
-            [on.number[who.start] for who in there],
+            [on.point(who, who.start) for who in there],
             goals,
             [who.robot.radius_m for who in there],
             margin_m=on.roadmap.margin_m,
