@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
+from muster.mission.errors import ParameterError
+from muster.mission.lanes import Lanes
 from muster.mission.model import Mission, Point, Robot
 from muster.motion.actions import TaskMotion, plan
 from muster.motion.map_world import World
 from muster.traffic.journeys.roadmap_plan import RoadmapPlan
-from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
+from muster.traffic.roadmaps.doors import RoadmapDoors
 from muster.traffic.roadmaps.given_lanes import ClosedLane, closed_lanes
 from muster.traffic.roadmaps.roadmap import MARGIN_M, Layer, Roadmap, layer_of_lanes, layer_of_space
 from muster.traffic.roadmaps.robot_sizes import same_ways, sizes
-from muster.traffic.roadmaps.robot_spaces import RobotSpaces, require_radius
+from muster.traffic.roadmaps.robot_spaces import RobotSpaces
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +38,10 @@ class MissionRoadmap:
         the free space of each robot.
     doors
         of the mission; the roadmap is that with all of them open.
+    layers
+        of which the roadmap is made.
+    maker
+        makes further ones.
     """
 
     roadmap: Roadmap
@@ -42,7 +49,9 @@ class MissionRoadmap:
     point_of: tuple[Mapping[Point, int], ...]
     closed: tuple[tuple[ClosedLane, ...], ...]
     spaces: RobotSpaces
-    doors: RoadmapDoors = NO_DOORS
+    doors: RoadmapDoors
+    layers: tuple[Layer, ...]
+    maker: _Maker
 
     @classmethod
     def of(cls, mission: Mission, world: World | None = None, *, margin_m: float = MARGIN_M) -> MissionRoadmap:
@@ -58,53 +67,73 @@ class MissionRoadmap:
         robots = tuple(robot for robot in mission.robots if robot.kind == "ground") or mission.robots
         kind = robots[0].kind
         sharing = (*robots, *(robot for robot in mission.newcomers if robot.kind == kind))
-        require_radius([robot.radius_m for robot in sharing])
         mapped = mission.map is not None and mission.has_ways_by_map
         spaces = RobotSpaces((world or World.of_travel(mission)) if mapped else None, kind)
-        layers, places, closed = list[Layer](), list[list[Point]](), list[tuple[ClosedLane, ...]]()
-        before_m = 0.0
-        for radius_m in _sizes(mission, spaces, sharing):
-            own = [robot for robot in sharing if before_m < robot.radius_m <= radius_m]
-            places.append(list(dict.fromkeys(place[:2] for place in _places(mission, own))))
-            before_m, space = radius_m, spaces.space(radius_m)
-            if mission.lanes is None:
-                layers.append(layer_of_space(space, radius_m, places[-1], margin_m=margin_m))
-                closed.append(())
-            else:
-                layers.append(layer_of_lanes(mission.lanes, radius_m, places[-1], space=space, margin_m=margin_m))
-                closed.append(tuple(closed_lanes(mission.lanes, radius_m, spaces.finder(radius_m))))
+        maker = _Maker(mission.lanes, spaces, margin_m)
+        radii_m = sizes((robot.radius_m for robot in sharing), maker.alike)
+        if not radii_m:
+            raise ParameterError(
+                "radius_m: 0 for all robots; expected a robot with a radius above 0: others share any lane"
+            )
+        owners = [
+            [robot for robot in sharing if narrower_m < robot.radius_m <= radius_m]
+            for narrower_m, radius_m in pairwise((0.0, *radii_m))
+        ]
+        places = [list(dict.fromkeys(place[:2] for place in _places(mission, own))) for own in owners]
+        layers = tuple(map(maker.layer, radii_m, places))
         roadmap = Roadmap.joined(layers, margin_m)
         points = iter(roadmap.places.tolist())
-        point_of = tuple({place: next(points) for place in own} for own in places)
-        doors = RoadmapDoors.of(mission, kind, spaces.world)
-        return cls(roadmap, tuple(filter(_has_radius, robots)), point_of, tuple(closed), spaces, doors)
+        return cls(
+            roadmap=roadmap,
+            robots=tuple(robot for robot in robots if robot.radius_m > 0),
+            point_of=tuple({place: next(points) for place in own} for own in places),
+            closed=tuple(map(maker.closed_lanes, radii_m)),
+            spaces=spaces,
+            doors=RoadmapDoors.of(mission, kind, spaces.world),
+            layers=layers,
+            maker=maker,
+        )
 
     def plan(self, seed: int = 0) -> RoadmapPlan:
-        """What plans moves of robots on it."""
-        return RoadmapPlan(self.roadmap, self.spaces, seed, self.doors)
+        """What plans moves of robots on it, and of others that join, of whatever size."""
+        return RoadmapPlan(self.roadmap, self.spaces, seed, self.doors, self._for_more)
 
     def points(self, places: Iterable[Point], robot: Robot) -> list[int]:
         """The points of places of a robot, or of its tasks."""
         numbers = self.point_of[self.roadmap.layer_for(robot.radius_m)]
         return [numbers[place[:2]] for place in places]
 
+    def _for_more(self, radii_m: Iterable[float]) -> Roadmap:
+        """The roadmap for robots of further sizes, too."""
+        made = {layer.radius_m: layer for layer in self.layers}
+        places = list(dict.fromkeys(place for points in self.point_of for place in points))
+        every = sizes([*made, *radii_m], self.maker.alike)
+        layers = [made[radius_m] if radius_m in made else self.maker.layer(radius_m, places) for radius_m in every]
+        return Roadmap.joined(layers, self.roadmap.margin_m)
 
-def _has_radius(robot: Robot) -> bool:
-    return robot.radius_m > 0
 
+@dataclass(frozen=True, eq=False)
+class _Maker:
+    """Makes layers of the lanes of a mission where it has them, else of its free space."""
 
-def _sizes(mission: Mission, spaces: RobotSpaces, robots: Sequence[Robot]) -> tuple[float, ...]:
-    """The radii of the layers: where robots are of many, two share one that close the same lanes and gaps."""
+    lanes: Lanes | None
+    spaces: RobotSpaces
+    margin_m: float
 
-    def alike(radius_m: float, wider_m: float) -> bool:
-        if mission.lanes is not None:
-            closed = [closed_lanes(mission.lanes, one, spaces.finder(one)) for one in (radius_m, wider_m)]
-            if [lane.number for lane in closed[0]] != [lane.number for lane in closed[1]]:
-                return False
-        space, wider = spaces.space(radius_m), spaces.space(wider_m)
-        return space is None or wider is None or same_ways(space, wider)
+    def layer(self, radius_m: float, places: Sequence[Point]) -> Layer:
+        space = self.spaces.space(radius_m)
+        if self.lanes is None:
+            return layer_of_space(space, radius_m, places, margin_m=self.margin_m)
+        return layer_of_lanes(self.lanes, radius_m, places, space=space, margin_m=self.margin_m)
 
-    return sizes((robot.radius_m for robot in robots), alike)
+    def closed_lanes(self, radius_m: float) -> tuple[ClosedLane, ...]:
+        return () if self.lanes is None else tuple(closed_lanes(self.lanes, radius_m, self.spaces.finder(radius_m)))
+
+    def alike(self, radius_m: float, wider_m: float) -> bool:
+        """Whether the same lanes and gaps are open to robots of two sizes."""
+        closed = [[lane.number for lane in self.closed_lanes(one)] for one in (radius_m, wider_m)]
+        space, wider = self.spaces.space(radius_m), self.spaces.space(wider_m)
+        return closed[0] == closed[1] and (space is None or wider is None or same_ways(space, wider))
 
 
 def _places(mission: Mission, robots: Sequence[Robot]) -> Iterator[Point]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -45,6 +45,8 @@ class RoadmapPlan:
         of the orders that are tried.
     doors
         of the mission, which close and open.
+    for_more
+        makes the roadmap for robots of further radii, which may join; without it there are none.
     cut_off
         see `Planner`; where many travel on a large roadmap this is not found out: any of them may be.
     stepwise
@@ -55,12 +57,14 @@ class RoadmapPlan:
     spaces: RobotSpaces = RobotSpaces()
     seed: int = 0
     doors: RoadmapDoors = NO_DOORS
+    for_more: Callable[[Sequence[float]], Roadmap] | None = None
     cut_off: frozenset[int] = frozenset()
     stepwise: bool = False
     _closed: frozenset[str] = field(init=False)
     _priorities: list[str] = field(default_factory=list)
     _goals: dict[str, tuple[Point | None, int]] = field(default_factory=dict)  # and in how many plans by steps
     _known: Network | None = None
+    _more_m: list[float] = field(default_factory=list)  # radii of robots that have joined
 
     def __post_init__(self) -> None:
         self._closed = self.doors.closed
@@ -145,6 +149,7 @@ class RoadmapPlan:
 
     def _network_for(self, travellers: Sequence[Traveller], more: Sequence[tuple[Traveller, Point]] = ()) -> Network:
         """The roadmap with their places, and some more, as it was for the last plan where that has them."""
+        self._admit(travellers)
         layer = {who.robot.radius_m: self.roadmap.layer_for(who.robot.radius_m) for who in travellers}
         own = [(who, place) for who in travellers for place in (who.start, *(stop.at for stop in who.stops))]
         places = [Standing(place, layer[who.robot.radius_m]) for who, place in (*more, *own)]
@@ -158,6 +163,14 @@ class RoadmapPlan:
                 roadmap = roadmap.keeping(self.doors.open_ways(roadmap.points[roadmap.edges], self._closed, radii_m))
             self._known = Network.of(roadmap)
         return self._known
+
+    def _admit(self, travellers: Sequence[Traveller]) -> None:
+        """Make layers for robots of other sizes than there were."""
+        known = {*self.roadmap.radii_m.tolist(), *self._more_m}
+        fresh = {who.robot.radius_m for who in travellers} - known
+        if fresh and self.for_more is not None:
+            self._more_m += sorted(fresh)
+            self.roadmap, self._known = self.for_more(self._more_m), None
 
     def _around(self, who: Traveller, layer: int) -> Iterator[Standing]:
         """Places by which others, of a layer, get round a robot that never leaves, where there is room."""

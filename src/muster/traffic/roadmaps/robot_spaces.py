@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from muster.mission.errors import ParameterError
 from muster.mission.values.arrays import Floats
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
@@ -169,11 +168,3 @@ def _nearest_free(space: GridSpace | PolygonSpace, place: Floats) -> Floats | No
     if space.region.is_empty:
         return None
     return np.asarray(shapely.get_coordinates(shapely.shortest_line(space.region, shapely.Point(place)))[0])
-
-
-def require_radius(radii_m: Sequence[float]) -> None:
-    """Raise `ParameterError` unless a robot has a radius above 0."""
-    if max(radii_m, default=0.0) <= 0:
-        raise ParameterError(
-            "radius_m: 0 for all robots; expected a robot with a radius above 0: others share any lane"
-        )
