@@ -81,7 +81,10 @@ class SharedPassages:
             return problem
         robots = np.array([drives(robot) for robot in problem.robots], dtype=np.bool_)
         layers = [self.made.roadmap.layer_for(robot.radius_m) for robot in filter(drives, problem.robots)]
-        seconds = np.average([self._delays(problem, delays, layer) for layer in layers], axis=0)
+        sizes, counts = np.unique(layers, return_counts=True)
+        by_size = [self._delays(problem, delays, int(layer)) for layer in sizes]
+        # The mean over robots; of one size exactly its own, so that equal costs stay equal.
+        seconds = by_size[0] if len(sizes) == 1 else np.average(by_size, axis=0, weights=counts)
         waiting = Waiting(seconds, robots)
         return replace(_counting_ways_home(problem), known=problem.measured, waiting=waiting).ready()
 
