@@ -111,7 +111,7 @@ def test_the_border_of_a_no_fly_zone_is_no_obstacle_to_those_below(world):
     run = Simulation(mission, solve(mission, "greedy"), unknown=True, world=world)
     while not run.done:
         run.advance(run.time_s + 5.0)
-    seen = run._ground.ground.seen
+    seen = run._ground.map.ground.seen
     at = seen.centres(np.argwhere(seen.occupied))
     assert not ((np.abs(at[:, 0] - 5.5) < 0.6) & (np.abs(at[:, 1] - 4.0) < 3.8)).any()
     assert run.result().tasks_done == ("t_0",)
@@ -130,13 +130,13 @@ def test_what_a_silent_robot_sees_reaches_the_team_when_it_is_heard():
     )
     run = Simulation(mission, solve(mission, "greedy"), unknown=True)
     run.advance(0.6)
-    known = np.count_nonzero(run._ground.ground.seen.known)
+    known = np.count_nonzero(run._ground.map.ground.seen.known)
     while run.time_s < 5.0:
         run.advance(5.0)
-    assert np.count_nonzero(run._ground.ground.seen.known) == known
+    assert np.count_nonzero(run._ground.map.ground.seen.known) == known
     while run.time_s < 7.0:
         run.advance(7.0)
-    assert np.count_nonzero(run._ground.ground.seen.known) > known
+    assert np.count_nonzero(run._ground.map.ground.seen.known) > known
 
 
 def test_frontiers_become_tasks_until_all_is_explored():
@@ -173,7 +173,7 @@ def test_a_wide_robot_that_joins_keeps_off_what_was_seen_before():
     run = Simulation(mission, solve(mission, "greedy"), unknown=True)
     run.advance(1.0)
     wide = Body(0.8, "ground")
-    way = run._ground.ground.way(wide, (1.5, 2.0), (10.0, 2.0)).points
+    way = run._ground.map.ground.way(wide, (1.5, 2.0), (10.0, 2.0)).points
     face = shapely.LineString([(6.0, 0.0), (6.0, 4.9)])  # as far as the robot has seen it
     assert shapely.LineString(way).distance(face) > 0.79
 

@@ -278,7 +278,7 @@ class Simulation:
         """
         if self._ground is None:
             raise ParameterError(f"save_map: {file}; expected robots without a map")
-        seen = self._ground.ground.seen
+        seen = self._ground.map.ground.seen
         write_ros_map(Path(file), seen.known, seen.occupied, seen.frame)
 
     def close(self) -> None:
