@@ -149,7 +149,7 @@ class TeamMap:
         free = seen.known & ~seen.occupied
         for layer in self._layers:
             layers = max(1, int(np.ceil((2 * layer.rank - self.rules.lowest_m) / seen.frame.cell_m)))
-            layer.ground.seen.note_free(self._on_ground(free[:layers].all(axis=0)))
+            layer.ground.seen.note_free(self.on_ground(free[:layers].all(axis=0)))
 
     def is_closed(self, body: Body, points: Floats) -> bool:
         """Return whether an obstacle that is new is too near to the line through points (k, d)."""
@@ -159,7 +159,7 @@ class TeamMap:
         layer = next((one for one in self._layers if one.rank >= rank), self._layers[-1])
         return len(layer.fresh) > 0 and not layer.ground.is_clear(body, points[:, :2], CERTAIN, layer.fresh)
 
-    def _on_ground(self, columns: Bools) -> Bools:
+    def on_ground(self, columns: Bools) -> Bools:
         """Return for each cell of the ground what holds of the column of air over it."""
         assert self.air is not None
         frame, air = self.ground.seen.frame, self.air.seen.frame

@@ -93,8 +93,8 @@ class UnknownGround:
         self.paths = ExploredPaths(self.map)
         self.mission = without_obstacles(mission, self.map.rules)
         self._with_map = RobotPaths(self._truth)
-        self._shown = ShownMap(self.map.ground)
-        self._exploration = Exploration(mission, self.map.ground) if explore or mission.tags else None
+        self._shown = ShownMap(self.map)
+        self._exploration = Exploration(mission, self.map) if explore or mission.tags else None
         self._lidars: dict[str, _Lidar] = {}
         self._ways: dict[str, _Way] = {}
         self._turned = 0

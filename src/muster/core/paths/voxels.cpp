@@ -230,8 +230,7 @@ void VoxelWays::pull(std::vector<Spot>& way) const {
 }
 
 std::vector<std::int64_t> voxels_passed(VoxelShape shape, const SphereScan& scan) {
-  const int count = scan.rings * scan.columns;
-  const double most = *std::max_element(scan.reached, scan.reached + count);
+  const double most = *std::max_element(scan.reached, scan.reached + static_cast<std::ptrdiff_t>(scan.rings) * scan.columns);
   const double around = 2 * std::numbers::pi / scan.columns, up = std::numbers::pi / (scan.rings - 1);
   const auto first = [&](double x) { return std::max(0, static_cast<int>(std::floor(x - most))); };
   const auto end = [&](double x, int count) { return std::min(count, static_cast<int>(std::ceil(x + most))); };
