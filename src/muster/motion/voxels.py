@@ -102,6 +102,10 @@ class VoxelWays:
         """Return whether all voxels between two places (3,) are free."""
         return self._ways.sees(self._cells(a), self._cells(b))
 
+    def part(self, place: Floats) -> int:
+        """Return the number of the connected part of the free voxels that a place (3,) is in; 0: it is in none."""
+        return self._ways.part(self._cells(place))
+
     def way(self, start: Floats, goal: Floats) -> Floats | None:
         """Return the points (k, 3) of the shortest way, its ends included; None: there is none."""
         found = self._ways.way(self._cells(start), self._cells(goal))

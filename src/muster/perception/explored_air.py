@@ -112,6 +112,12 @@ class ExploredAir:
         points = self._way(body, a, b)
         return disconnected(a, b) if points is None else Path(without_repetitions(points))
 
+    def reached(self, body: Body, exits: Floats, entries: Floats) -> Bools:
+        """Return which entries (m, 3) ways of the first pass lead to from some of the exits (n, 3)."""
+        finder = self._finder(body, CERTAIN)
+        parts = {finder.part(place, 4 * _SNAP_CELLS) for place in exits} - {0}
+        return np.array([self.stands(body, place) and finder.part(place, _SNAP_CELLS) in parts for place in entries])
+
     def lengths(self, body: Body, exits: Floats, entries: Floats) -> Floats:
         """Return the lengths (n, m) of ways from exits (n, 3) to entries (m, 3), metres; inf where there is none."""
         stands = [self.stands(body, place) for place in entries]
@@ -223,6 +229,11 @@ class _Finder:
             return None
         found = self.ways.way(begin, end)
         return None if found is None else np.concatenate([[start], found, [goal]])
+
+    def part(self, place: Floats, cells: int) -> int:
+        """Return the number of the connected part that a place is joined to; 0: it is joined to none."""
+        joined = self._joined(place, cells)
+        return 0 if joined is None else self.ways.part(joined)
 
     def without(self, places: Floats) -> _Finder:
         """Return the finder of the same voxels, with those blocked, too, that places (n, 3) are in."""

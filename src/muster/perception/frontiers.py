@@ -36,8 +36,8 @@ class Frontiers(ABC):
         """Return the places (n, d) of the cells of each frontier, the largest frontier first, metres."""
 
     @abstractmethod
-    def lengths(self, here: Floats, places: Floats) -> Floats:
-        """Return the lengths (n, m) of ways from where robots are (n, 3) to places (m, d); inf where there is none."""
+    def reached(self, here: Floats, places: Floats) -> Bools:
+        """Return which places (m, d) ways lead to from where robots are (n, d)."""
 
     @abstractmethod
     def are_near(self, place: Sequence[float]) -> bool:
@@ -48,8 +48,7 @@ class Frontiers(ABC):
         targets = np.array([_middle(group) for group in self.groups()])
         if not len(targets):
             return []
-        reached = np.isfinite(self.lengths(here, targets).min(axis=0))
-        return list(targets[reached])
+        return list(targets[self.reached(here, targets)])
 
 
 class GroundFrontiers(Frontiers):
@@ -80,9 +79,9 @@ class GroundFrontiers(Frontiers):
         groups = _grouped(cells, numbers[tuple(cells.T)] - 1, count, least)
         return [self._placed(group) for group in groups]
 
-    def lengths(self, here: Floats, places: Floats) -> Floats:
+    def reached(self, here: Floats, places: Floats) -> Bools:
         """See `Frontiers`."""
-        return self.ground.lengths(self.body, here[:, :2], places)
+        return np.isfinite(self.ground.lengths(self.body, here[:, :2], places).min(axis=0))
 
     def are_near(self, place: Sequence[float]) -> bool:
         """See `Frontiers`."""
@@ -114,10 +113,10 @@ class OverflownFrontiers(GroundFrontiers):
         self._map, self._height_m = team_map, height_m
         super().__init__(team_map.ground, body, near=True)
 
-    def lengths(self, here: Floats, places: Floats) -> Floats:
+    def reached(self, here: Floats, places: Floats) -> Bools:
         """See `Frontiers`."""
         assert self._map.air is not None
-        return self._map.air.lengths(self.body, here, places)
+        return self._map.air.reached(self.body, here, places)
 
     def _free(self) -> Bools:
         air = self._map.air
@@ -156,9 +155,9 @@ class AirFrontiers(Frontiers):
         least = max(_LEAST_CELLS, math.ceil(2 * self.body.radius_m / frame.cell_m) ** 2)
         return [frame.centres(group) for group in _grouped(voxels, parts.reshape(-1), len(blocks), least)]
 
-    def lengths(self, here: Floats, places: Floats) -> Floats:
+    def reached(self, here: Floats, places: Floats) -> Bools:
         """See `Frontiers`."""
-        return self.air.lengths(self.body, here, places)
+        return self.air.reached(self.body, here, places)
 
     def are_near(self, place: Sequence[float]) -> bool:
         """See `Frontiers`."""

@@ -124,8 +124,7 @@ class Exploration:
         if not tasks:
             return
         places = np.array([self._open[name].at for name in tasks])
-        reached = np.isfinite(frontiers.lengths(here, places).min(axis=0)).tolist()
-        for name, is_reached in zip(tasks, reached, strict=True):
+        for name, is_reached in zip(tasks, frontiers.reached(here, places).tolist(), strict=True):
             if not (is_reached and frontiers.are_near(self._open[name].at)):
                 del self._open[name]
                 executor.report(Event(at_s=executor.now_s, cancel_task=name))

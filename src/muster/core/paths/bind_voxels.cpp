@@ -56,6 +56,9 @@ void bind_voxels(nb::module_& m) {
           "sees", [](const VoxelWays& w, const Triple& a, const Triple& b) { return w.sees(spot(a), spot(b)); }, "a"_a,
           "b"_a, "Whether all voxels between two points are free.")
       .def(
+          "part", [](VoxelWays& w, const Triple& p) { return w.part(spot(p)); }, "point"_a,
+          "The number of the connected part that a point is in; 0 if it is not free.")
+      .def(
           "way",
           [](VoxelWays& w, const Triple& a, const Triple& b) {
             std::vector<Spot> found;

@@ -16,6 +16,7 @@ namespace muster {
 namespace {
 
 constexpr int kBetweenLooks = 4096;
+constexpr double kHaste = 1.1;  // of the estimate: the search goes ahead, and turns are pulled straight afterwards
 constexpr int kPulls = 6;  // of pulling turns straight
 
 int voxel_of(double x, int count) { return std::clamp(static_cast<int>(std::floor(x)), 0, count - 1); }
@@ -138,7 +139,7 @@ struct VoxelWays::Search {
     if (one.length != 0.0F && one.length - 1.0F <= static_cast<float>(length)) return;
     one.length = static_cast<float>(length) + 1.0F;
     one.parent = parent + 1;
-    open.push({length + distance(place(voxel), to), voxel});
+    open.push({length + kHaste * distance(place(voxel), to), voxel});
   }
   template <class Visit>
   void neighbours(std::int32_t voxel, const Visit& visit) const {
@@ -194,12 +195,18 @@ struct VoxelWays::Search {
   }
 };
 
+std::int32_t VoxelWays::part(Spot p) {
+  if (!free(p)) return 0;
+  if (parts_.empty()) number_parts();
+  return parts_[shape_.at(voxel_of(p.x, shape_.columns), voxel_of(p.y, shape_.rows), voxel_of(p.z, shape_.layers))];
+}
+
 std::vector<Spot> VoxelWays::way(Spot from, Spot to, const Pause& pause) {
   if (!free(from) || !free(to)) return {};
   if (sees(from, to)) return {from, to};
-  if (parts_.empty()) number_parts();
+  if (part(from) != part(to)) return {};
   Search search(*this, from, to);
-  if (parts_[search.first] != parts_[search.last] || !search.run(pause)) return {};
+  if (!search.run(pause)) return {};
   std::vector<Spot> way = search.way();
   pull(way);
   return way;

@@ -29,6 +29,8 @@ class VoxelWays {
   bool free(Spot p) const;
   // Whether all voxels between two points are free.
   bool sees(Spot a, Spot b) const;
+  // The number of the connected part that a point is in; 0 if it is not free.
+  std::int32_t part(Spot p);
   // A way with its ends; empty if there is none.
   std::vector<Spot> way(Spot from, Spot to, const Pause& pause);
 
