@@ -64,7 +64,9 @@ def test_ways_among_random_prisms(seed):
     prisms = []
     for x, y in random.uniform(2, 15, (8, 2)):
         low = random.choice([-math.inf, random.uniform(1, 3)])
-        prisms.append(Prism(shapely.box(x, y, x + random.uniform(0.5, 4), y + random.uniform(0.5, 4)), low, random.uniform(4, 7)))
+        prisms.append(
+            Prism(shapely.box(x, y, x + random.uniform(0.5, 4), y + random.uniform(0.5, 4)), low, random.uniform(4, 7))
+        )
     voxels, exact = ways_among(*prisms)
     ends = random.uniform((0.3, 0.3, 0.3), (19.7, 19.7, 7.7), (40, 3))
     free = [place for place in ends if voxels.free(place)][:8]

@@ -669,6 +669,11 @@ class VoxelWays:
     def sees(self, a: Sequence[float], b: Sequence[float]) -> bool:
         """Whether all voxels between two points are free."""
 
+    def part(self, point: Sequence[float]) -> int:
+        """
+        The number of the connected part that a point is in; 0 if it is not free.
+        """
+
     def way(self, start: Sequence[float], goal: Sequence[float]) -> NDArray[numpy.float64]:
         """A way with its ends, (k, 3); empty if there is none."""
 

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from muster import core
+from muster.motion.free_space import PrismSpace
 from muster.motion.grid import Bools, Floats, Indices
 from muster.motion.maps.raster import touched
-from muster.motion.free_space import PrismSpace
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ leaves it open, since obstacles only make ways longer; so ways are kept, and sou
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
@@ -22,11 +23,11 @@ from muster.motion.path import NoPath, Path
 from muster.motion.paths.on_grid import without_repetitions
 from muster.motion.paths.planner import disconnected, not_free
 from muster.motion.voxels import VoxelFrame, VoxelWays
-from muster.perception.explored_ground import CERTAIN, PASSES, POSSIBLE, is_obstacle
+from muster.perception.explored_ground import CERTAIN, POSSIBLE, is_obstacle
 from muster.perception.tight_ways import dense, in_the_middle
 from muster.perception.voxel_map import VoxelMap
 
-MOST_VOXELS = 1_000_000
+MOST_VOXELS = 600_000
 """Of a map, about."""
 _HALF = math.sqrt(0.75)
 """From the centre of a voxel to its corners, in voxels."""
@@ -147,7 +148,7 @@ class ExploredAir:
     def is_free(self, body: Body, points: Floats) -> bool:
         """Return whether a body can be at points (k, 3), and go straight from each to the next."""
         finder = self._finder(body, CERTAIN)
-        if all(finder.ways.sees(a, b) for a, b in zip(points[:-1], points[1:], strict=True)):
+        if all(finder.ways.sees(a, b) for a, b in itertools.pairwise(points)):
             return True
         places = dense(points, self.seen.frame.cell_m / 2)
         if not free(self._space(body), places).all():
@@ -171,10 +172,9 @@ class ExploredAir:
     def _way(self, body: Body, start: Floats, goal: Floats) -> Floats | None:
         key = (body, tuple(start.tolist()), tuple(goal.tolist()))
         known = self._ways.get(key)
-        if known is not None:
-            if known.points is None or self.is_clear(body, known.points, self._fresh[known.seen :]):
-                known.seen = len(self._fresh)
-                return known.points
+        if known is not None and (known.points is None or self.is_clear(body, known.points, self._fresh[known.seen :])):
+            known.seen = len(self._fresh)
+            return known.points
         if len(self._ways) >= _MOST_WAYS:
             self._ways.clear()
         points = self._finder(body, CERTAIN).way(start, goal)
@@ -196,14 +196,14 @@ class ExploredAir:
             points, narrow = in_the_middle(points, tree, cell_m, least_m + 0.1 * cell_m, least_m)
             if not len(narrow):
                 return points
-            finder = self._finders[body, POSSIBLE] = finder.without(narrow)
+            finder = self._finders[body, POSSIBLE] = finder.without(narrow, least_m)
         return None
 
     def _finder(self, body: Body, certainty: int) -> _Finder:
         key = (body, certainty)
         if key not in self._finders:
             cells = body.radius_m / self.seen.frame.cell_m
-            least = cells + _HALF + _SPARE if certainty == CERTAIN else max(cells + _NEAR - _HALF, _HALF)
+            least = cells + _HALF + _SPARE if certainty == CERTAIN else max(cells + _NEAR - 0.5, _HALF)
             self.seen.require_clearance((least + 1) * self.seen.frame.cell_m)
             if body not in self._ruled:
                 self._ruled[body] = self.seen.frame.beyond(self._space(body))
@@ -235,11 +235,15 @@ class _Finder:
         joined = self._joined(place, cells)
         return 0 if joined is None else self.ways.part(joined)
 
-    def without(self, places: Floats) -> _Finder:
-        """Return the finder of the same voxels, with those blocked, too, that places (n, 3) are in."""
-        blocked = self.ways.blocked.copy()
+    def without(self, places: Floats, least_m: float) -> _Finder:
+        """Return the finder with those voxels blocked, too, that places (n, 3) are in, and narrow ones around them."""
+        from scipy.ndimage import binary_dilation
+
         voxels, within = self.ways.frame.voxels(places)
-        blocked[tuple(voxels[within].T)] = True
+        at = np.zeros_like(self.ways.blocked)
+        at[tuple(voxels[within].T)] = True
+        narrow = binary_dilation(at, np.ones((3, 3, 3)), mask=self.seen.clearances < least_m / self.ways.frame.cell_m)
+        blocked: Bools = self.ways.blocked | at | narrow
         return _Finder(VoxelWays(self.ways.frame, blocked), self.seen)
 
     def _joined(self, place: Floats, cells: int) -> Floats | None:

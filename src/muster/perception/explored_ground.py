@@ -140,9 +140,7 @@ class ExploredGround:
         tree = self.seen.tree()
         while (points := finder.way(start, goal)) is not None:
             cell_m = self.seen.frame.resolution_m
-            points, narrow = in_the_middle(
-                points, tree, cell_m, body.radius_m + _SPARE * cell_m, body.radius_m * _FITS
-            )
+            points, narrow = in_the_middle(points, tree, cell_m, body.radius_m + _SPARE * cell_m, body.radius_m * _FITS)
             if not len(narrow):
                 return points
             finder = self._made[body, POSSIBLE] = finder.without(narrow)

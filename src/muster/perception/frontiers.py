@@ -87,7 +87,9 @@ class GroundFrontiers(Frontiers):
         """See `Frontiers`."""
         cells = math.ceil(self.apart_m / self.ground.seen.frame.resolution_m)
         column, row = np.floor(self.ground.seen.frame.to_grid(np.array([place[:2]]))[0]).astype(int)
-        return bool(self.cells[max(0, row - cells) : row + cells + 1, max(0, column - cells) : column + cells + 1].any())
+        return bool(
+            self.cells[max(0, row - cells) : row + cells + 1, max(0, column - cells) : column + cells + 1].any()
+        )
 
     def _free(self) -> Bools:
         return self.ground.free_cells(self.body)

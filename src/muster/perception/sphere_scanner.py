@@ -62,7 +62,9 @@ class SphereScanner:
         along = np.broadcast_arrays(level * np.cos(angles), level * np.sin(angles), up)
         return np.stack(along, axis=-1)
 
-    def scan(self, eye: Floats, heading: float, faces: Floats, slabs: list[Slab], ground_m: float, balls: Floats) -> SphereScan:
+    def scan(
+        self, eye: Floats, heading: float, faces: Floats, slabs: list[Slab], ground_m: float, balls: Floats
+    ) -> SphereScan:
         """Return an exact scan.
 
         Parameters

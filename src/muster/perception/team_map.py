@@ -9,7 +9,6 @@ its way on the ground.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -179,5 +178,3 @@ class TeamMap:
     def _note(self, layer: _Layer, fresh: Indices, changed: bool) -> None:
         layer.changed |= changed
         layer.fresh = np.concatenate([layer.fresh, fresh])
-
-

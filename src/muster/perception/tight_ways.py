@@ -17,7 +17,9 @@ _PUSH, _PUSHES = 0.1, 20
 """Of a cell by which ways are pushed at a time, and how often."""
 
 
-def in_the_middle(points: Floats, tree: KDTree, cell_m: float, wanted_m: float, least_m: float) -> tuple[Floats, Floats]:
+def in_the_middle(
+    points: Floats, tree: KDTree, cell_m: float, wanted_m: float, least_m: float
+) -> tuple[Floats, Floats]:
     """Push a way off obstacles that are too near; return it, and its places (n, d) at which the body does not fit.
 
     Parameters

@@ -174,13 +174,15 @@ def _explorers_of(mission: Mission, team_map: TeamMap) -> list[_Explorers]:
     if air is None:
         return [_Explorers((), ground)]
     able = [robot for robot in mission.all_robots if robot.camera is not None or not near]
-    flying, driving = (
-        tuple(robot.id for robot in able if robot.kind == kind) for kind in ("air", "ground")
-    )
+    flying, driving = (tuple(robot.id for robot in able if robot.kind == kind) for kind in ("air", "ground"))
     height_m = team_map.rules.lowest_m + FLIGHT_M
     explorers = []
     if flying:
-        made = (lambda body: OverflownFrontiers(team_map, body, height_m)) if near else (lambda body: AirFrontiers(air, body))
+        made = (
+            (lambda body: OverflownFrontiers(team_map, body, height_m))
+            if near
+            else (lambda body: AirFrontiers(air, body))
+        )
         explorers.append(_Explorers(flying, made))
     if driving and not (near and flying):
         explorers.append(_Explorers(driving, ground))

@@ -20,7 +20,6 @@ from muster.motion.grid import Bools, Floats
 from muster.motion.map_world import Body, World, body_of
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.unreachable_places import checked_world
-from muster.perception.explored_ground import ruled_world
 from muster.perception.explored_paths import ExploredPaths, require_travel_by_map
 from muster.perception.laser import LIDAR
 from muster.perception.occupancy_map import Scan

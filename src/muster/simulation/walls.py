@@ -13,7 +13,6 @@ from muster.perception.explored_ground import is_obstacle
 from muster.perception.sphere_scanner import Slab
 
 
-
 def faces_and_slabs(world: World, body: Body) -> tuple[Floats, list[Slab]]:
     """What stops a body on a map.
 

@@ -421,7 +421,9 @@ class WorldBase(SimulatedWorld, ABC):
         if self._things is None:
             self._things = (_NO_FACES, []) if self._map is None else things_in_air(self._map)
         number, places = self._number(robot), self.positions
-        balls = [(*at, other.radius_m) for k, (other, at) in enumerate(zip(self._robots, places, strict=True)) if k != number]
+        balls = [
+            (*at, other.radius_m) for k, (other, at) in enumerate(zip(self._robots, places, strict=True)) if k != number
+        ]
         faces, slabs = self._things
         heading = float(self.headings[number])
         return scanner.scan(places[number], heading, faces, slabs, self.ground_m, np.array(balls).reshape(-1, 4))

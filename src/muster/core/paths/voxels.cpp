@@ -15,7 +15,7 @@ namespace muster {
 
 namespace {
 
-constexpr int kBetweenLooks = 4096;
+constexpr int kBetweenLooks = 1000;
 constexpr double kHaste = 1.1;  // of the estimate: the search goes ahead, and turns are pulled straight afterwards
 constexpr int kPulls = 6;  // of pulling turns straight
 
@@ -110,6 +110,7 @@ struct VoxelWays::Search {
   std::int32_t first, last;
   std::unique_ptr<Found, void (*)(void*)> found;
   Heap<Open> open;
+  bool arrived = false;
 
   Search(const VoxelWays& of, Spot a, Spot b) : ways(of), from(a), to(b), found(nullptr, std::free) {
     const VoxelShape& s = ways.shape_;
@@ -118,6 +119,7 @@ struct VoxelWays::Search {
     // Zeros that cost nothing where the search does not come by.
     found.reset(static_cast<Found*>(std::calloc(s.count(), sizeof(Found))));
     if (!found) throw std::bad_alloc();
+    reach(first, first, 0.0);
   }
 
   std::int32_t number(int x, int y, int z) const { return static_cast<std::int32_t>(ways.shape_.at(x, y, z)); }
@@ -167,22 +169,21 @@ struct VoxelWays::Search {
     });
     one.length = static_cast<float>(least) + 1.0F;
   }
-  bool run(const Pause& pause) {
-    reach(first, first, 0.0);
-    for (int steps = 1; !open.empty(); ++steps) {
+  // Take some steps; return whether the search has come to its end, where `arrived` says how.
+  bool run(int steps) {
+    for (; steps > 0 && !open.empty(); --steps) {
       const std::int32_t voxel = open.pop().voxel;
       if (of(voxel).closed) continue;
       settle(voxel);
       of(voxel).closed = true;
-      if (voxel == last) return true;
+      if (voxel == last) return arrived = true;
       const std::int32_t parent = of(voxel).parent - 1;
       const double before = of(parent).length - 1.0;
       neighbours(voxel, [&](std::int32_t other) {
         if (!of(other).closed) reach(other, parent, before + distance(place(parent), place(other)));
       });
-      if (steps % kBetweenLooks == 0) pause();
     }
-    return false;
+    return open.empty();
   }
   std::vector<Spot> way() const {
     std::vector<Spot> points{to};
@@ -205,9 +206,12 @@ std::vector<Spot> VoxelWays::way(Spot from, Spot to, const Pause& pause) {
   if (!free(from) || !free(to)) return {};
   if (sees(from, to)) return {from, to};
   if (part(from) != part(to)) return {};
-  Search search(*this, from, to);
-  if (!search.run(pause)) return {};
-  std::vector<Spot> way = search.way();
+  // From both ends by turns: one of them may be nearly enclosed, and is easier to leave than to find.
+  Search forth(*this, from, to), back(*this, to, from);
+  while (!forth.run(kBetweenLooks) && !back.run(kBetweenLooks)) pause();
+  if (!forth.arrived && !back.arrived) return {};
+  std::vector<Spot> way = forth.arrived ? forth.way() : back.way();
+  if (!forth.arrived) std::reverse(way.begin(), way.end());
   pull(way);
   return way;
 }
