@@ -1,6 +1,7 @@
 """Voxels: ways through them beside the exact ways among prisms, what a scan passes, and clearances by brute force."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -72,7 +73,7 @@ def test_ways_among_random_prisms(seed):
     free = [place for place in ends if voxels.free(place)][:8]
     for a, b in zip(free[::2], free[1::2], strict=False):
         way, shortest = voxels.way(a, b), exact.path(a, b).length_m
-        assert all(voxels.sees(p, q) for p, q in zip(way[:-1], way[1:], strict=True))
+        assert all(voxels.sees(p, q) for p, q in pairwise(way))
         assert exact.clear(way)
         assert shortest - 1e-9 <= length(way) < 1.15 * shortest + 0.3
 

@@ -71,7 +71,7 @@ def test_robots_pass_below_a_bridge_that_those_in_the_air_see_as_one():
         robots=[rover(), drone(place=(1.0, 6.0, 2.0))],
         tasks={"ground": ((12.0, 4.0, 0.0), "rover"), "air": ((12.0, 6.0, 2.0), "drone")},
     )
-    run, least, steps = carried_out(mission)
+    run, least, _ = carried_out(mission)
     assert set(run.result().tasks_done) == {"ground", "air"}
     assert least >= 0.99
     assert not run._ground.map.ground.seen.occupied.any()
@@ -114,7 +114,7 @@ def test_a_no_fly_zone_is_known_and_no_obstacle_on_the_ground():
         robots=[rover(place=(1.0, 2.0, 0.0)), drone(place=(1.0, 4.0, 1.0))],
         tasks={"ground": ((12.0, 2.0, 0.0), "rover"), "air": ((12.0, 4.0, 1.0), "drone")},
     )
-    run, least, steps = carried_out(mission)
+    run, _, steps = carried_out(mission)
     assert set(run.result().tasks_done) == {"ground", "air"}
     assert steps[:, 1, 1].max() > 6.2
     assert np.abs(steps[:, 0, 1] - 2.0).max() < 0.3

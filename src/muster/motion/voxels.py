@@ -57,7 +57,8 @@ class VoxelFrame:
     def voxels(self, points: Floats) -> tuple[Indices, Bools]:
         """Return the voxels (n, 3) in which points (n, 3) are, as layer, row, column, and which of them exist."""
         found = np.floor(self.to_cells(points)).astype(np.int64)[:, ::-1]
-        return found, ((found >= 0) & (found < np.array(self.shape))).all(axis=1)
+        within: Bools = np.asarray(((found >= 0) & (found < np.array(self.shape))).all(axis=1))
+        return found, within
 
     def beyond(self, space: PrismSpace) -> Bools:
         """Return the voxels that reach out of a space, be it by a part; its lowest height does not count."""
@@ -67,7 +68,8 @@ class VoxelFrame:
         x, y, z = self.origin
 
         def flat(points: Floats) -> Floats:
-            return (points - np.array([x, y])) / self.cell_m
+            cells: Floats = (points - np.array([x, y])) / self.cell_m
+            return cells
 
         whole = shapely.box(0, 0, columns, rows)
         outside = touched(shapely.difference(whole, shapely.transform(space.region, flat)), (rows, columns))

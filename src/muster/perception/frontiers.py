@@ -1,4 +1,7 @@
-"""Frontiers: where what was seen borders on what was not, and robots can get ([yamauchi1997]); on the ground and in the air."""
+"""Frontiers: where what was seen borders on what was not, and robots can get ([yamauchi1997]).
+
+There are some on the ground, in the air, and on the ground that robots in the air look at.
+"""
 
 from __future__ import annotations
 
@@ -81,7 +84,8 @@ class GroundFrontiers(Frontiers):
 
     def reached(self, here: Floats, places: Floats) -> Bools:
         """See `Frontiers`."""
-        return np.isfinite(self.ground.lengths(self.body, here[:, :2], places).min(axis=0))
+        reached: Bools = np.isfinite(self.ground.lengths(self.body, here[:, :2], places).min(axis=0))
+        return reached
 
     def are_near(self, place: Sequence[float]) -> bool:
         """See `Frontiers`."""

@@ -126,7 +126,7 @@ class OccupancyMap:
         np.add.at(self._sums, (rows, columns), points[within])
         touched = np.column_stack(np.divmod(np.unique(rows * width + columns), width))
         now = are_occupied(self.hits[tuple(touched.T)], self.passes[tuple(touched.T)])
-        fresh = touched[now & ~self.occupied[tuple(touched.T)]]
+        fresh: Indices = touched[now & ~self.occupied[tuple(touched.T)]]
         self.occupied[tuple(fresh.T)] = True
         self._keep_off(fresh)
         return fresh

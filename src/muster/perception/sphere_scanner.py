@@ -48,12 +48,12 @@ class SphereScanner:
     @property
     def azimuths(self) -> Floats:
         """Return the bearings (columns,) of beams from straight ahead, radians."""
-        return np.arange(round(2 * math.pi / self.step_rad)) * self.step_rad
+        return np.arange(round(2 * math.pi / self.step_rad), dtype=np.float64) * self.step_rad
 
     @property
     def elevations(self) -> Floats:
         """Return the elevations (rings,) of beams, radians."""
-        return np.linspace(-math.pi / 2, math.pi / 2, round(math.pi / self.step_rad) + 1)
+        return np.linspace(-math.pi / 2, math.pi / 2, round(math.pi / self.step_rad) + 1, dtype=np.float64)
 
     def directions(self, heading: float) -> Floats:
         """Return the unit vectors (rings, columns, 3) of beams in the map frame."""

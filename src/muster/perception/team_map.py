@@ -148,7 +148,8 @@ class TeamMap:
         free = seen.known & ~seen.occupied
         for layer in self._layers:
             layers = max(1, int(np.ceil((2 * layer.rank - self.rules.lowest_m) / seen.frame.cell_m)))
-            layer.ground.seen.note_free(self.on_ground(free[:layers].all(axis=0)))
+            columns: Bools = np.asarray(free[:layers].all(axis=0))
+            layer.ground.seen.note_free(self.on_ground(columns))
 
     def is_closed(self, body: Body, points: Floats) -> bool:
         """Return whether an obstacle that is new is too near to the line through points (k, d)."""

@@ -200,7 +200,7 @@ class UnknownGround:
         return scan
 
     def _are_things(self, name: str, ends: Floats, said: Mapping[str, Telemetry | None]) -> Bools:
-        """Whether beams of a robot that ended at places (n, d) met no other robot, as far as others say where they are."""
+        """Whether a robot's beams that ended at places (n, d) met no other robot, as far as those say where they are."""
         is_thing = np.ones(len(ends), dtype=np.bool_)
         margin_m = _APART_CELLS * self.map.cell_m
         for one, other in said.items():

@@ -32,11 +32,11 @@ from muster.motion.noise import NO_NOISE, Noise
 from muster.motion.order_trajectory import TrajectoryMaker
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.perception.laser import NO_DISCS, Scanner
-from muster.perception.sphere_scanner import SphereScan, SphereScanner
+from muster.perception.sphere_scanner import Slab, SphereScan, SphereScanner
 from muster.simulation.energy import NONE, ByRobot, SimulatedEnergy, capacity_in_usage, of_robot, require_by_robot
 from muster.simulation.port import Serving, SimulatedPort
 from muster.simulation.station_service import LOOK_S, WorldStations
-from muster.simulation.walls import Slab, faces_and_slabs, things_in_air
+from muster.simulation.walls import faces_and_slabs, things_in_air
 from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed, standing
 
 NEIGHBOURS = 10
@@ -421,12 +421,11 @@ class WorldBase(SimulatedWorld, ABC):
         if self._things is None:
             self._things = (_NO_FACES, []) if self._map is None else things_in_air(self._map)
         number, places = self._number(robot), self.positions
-        balls = [
-            (*at, other.radius_m) for k, (other, at) in enumerate(zip(self._robots, places, strict=True)) if k != number
-        ]
+        radii = np.array([other.radius_m for other in self._robots])
+        balls = np.delete(np.column_stack([places, radii]), number, axis=0)
         faces, slabs = self._things
         heading = float(self.headings[number])
-        return scanner.scan(places[number], heading, faces, slabs, self.ground_m, np.array(balls).reshape(-1, 4))
+        return scanner.scan(places[number], heading, faces, slabs, self.ground_m, balls)
 
     @abstractmethod
     def _go_on(self, until_s: float) -> list[Event]:

@@ -53,7 +53,7 @@ def random_space(seed: int) -> Mission:
     random = np.random.default_rng(seed)
     width, depth = WORLD_M
     tower = random.uniform((3, 3), (width - 5, depth - 5))
-    zones = [_block(*tower, 2, 2, None, random.uniform(6, 9))]
+    zones = [_block(float(tower[0]), float(tower[1]), 2, 2, None, random.uniform(6, 9))]
     for _ in range(6):
         wide, deep = random.permutation([random.uniform(0.3, 0.8), random.uniform(2, 7)])
         x, y = random.uniform((1, 1), (width - wide - 1, depth - deep - 1))

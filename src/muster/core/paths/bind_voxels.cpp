@@ -79,7 +79,8 @@ void bind_voxels(nb::module_& m) {
         return numbers_of(voxels_passed({shape[0], shape[1], shape[2]}, scan));
       },
       "shape"_a, "eye"_a, "heading"_a, "reached"_a,
-      "The voxels, as indices of the flat array, whose centres are nearer than the four beams around them reached, by a "
+      "The voxels, as indices of the flat array, whose centres are nearer than the four beams around them reached, by "
+      "a "
       "voxel at least. `reached` is (rings, columns), in voxels: rings from straight down to straight up, columns "
       "anticlockwise from `heading`.");
   m.def(

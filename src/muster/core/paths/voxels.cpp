@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kBetweenLooks = 1000;
 constexpr double kHaste = 1.1;  // of the estimate: the search goes ahead, and turns are pulled straight afterwards
-constexpr int kPulls = 6;  // of pulling turns straight
+constexpr int kPulls = 6;       // of pulling turns straight
 
 int voxel_of(double x, int count) { return std::clamp(static_cast<int>(std::floor(x)), 0, count - 1); }
 
@@ -241,7 +241,8 @@ void VoxelWays::pull(std::vector<Spot>& way) const {
 }
 
 std::vector<std::int64_t> voxels_passed(VoxelShape shape, const SphereScan& scan) {
-  const double most = *std::max_element(scan.reached, scan.reached + static_cast<std::ptrdiff_t>(scan.rings) * scan.columns);
+  const double most =
+      *std::max_element(scan.reached, scan.reached + static_cast<std::ptrdiff_t>(scan.rings) * scan.columns);
   const double around = 2 * std::numbers::pi / scan.columns, up = std::numbers::pi / (scan.rings - 1);
   const auto first = [&](double x) { return std::max(0, static_cast<int>(std::floor(x - most))); };
   const auto end = [&](double x, int count) { return std::min(count, static_cast<int>(std::ceil(x + most))); };

@@ -16,9 +16,7 @@ struct VoxelShape {
 
   std::size_t count() const { return static_cast<std::size_t>(layers) * rows * columns; }
   std::size_t at(int x, int y, int z) const { return (static_cast<std::size_t>(z) * rows + y) * columns + x; }
-  bool holds(int x, int y, int z) const {
-    return x >= 0 && y >= 0 && z >= 0 && x < columns && y < rows && z < layers;
-  }
+  bool holds(int x, int y, int z) const { return x >= 0 && y >= 0 && z >= 0 && x < columns && y < rows && z < layers; }
 };
 
 // Short ways by Lazy Theta* ([nash2010]) from voxel to voxel; turns are pulled straight afterwards.
