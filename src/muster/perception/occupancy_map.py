@@ -160,6 +160,19 @@ class OccupancyMap:
         means: Floats = self._sums[rows, columns] / self.hits[rows, columns, None]
         return means
 
+    def offsets_in(self, cells: Indices) -> Floats:
+        """Return how far the mean points hit are from the centres of cells (n, 2), in cells, row and column."""
+        off: Floats = self.frame.to_grid(self.points_in(cells).reshape(-1, 2))[:, ::-1] - cells - 0.5
+        return off
+
+    def put(self, cells: Indices, offsets: Floats, hits: Counts) -> None:
+        """Let cells (n, 2) be occupied, whose mean points hit are off their centres so far."""
+        at = tuple(cells.T)
+        self.hits[at] = hits
+        self._sums[at] = self.frame.to_map((cells + 0.5 + offsets)[:, ::-1]) * hits[:, None]
+        self.occupied[at] = True
+        self._keep_off(cells)
+
     def nearest_m(self, place: Floats) -> float:
         """Return the distance from a place (2,) to the nearest obstacle seen, metres; inf beyond `clearance_m`."""
         cell_m = self.frame.resolution_m

@@ -9,7 +9,9 @@ its way on the ground.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +22,7 @@ from muster.perception.explored_air import ExploredAir, air_to_build
 from muster.perception.explored_ground import CERTAIN, ExploredGround, frame_of, map_to_build, ruled_world
 from muster.perception.laser import Scanner
 from muster.perception.occupancy_map import Scan
+from muster.perception.packed_map import packed, unpack
 from muster.perception.sphere_scanner import SphereScanner
 from muster.perception.voxel_map import SpaceScan
 
@@ -102,6 +105,20 @@ class TeamMap:
             layer.ground.close(rules)
         if self.air is not None:
             self.air.close(rules)
+
+    def snapshot(self) -> dict[str, Any]:
+        """Return the map as plain data, from which `resume` makes it again."""
+        air = None if self.air is None else packed(self.air.seen)
+        return {"layers": [packed(layer.ground.seen) for layer in self._layers], "air": air}
+
+    def resume(self, snapshot: Mapping[str, Any]) -> None:
+        """Take over the map of the same team as it was."""
+        for layer, data in zip(self._layers, snapshot["layers"], strict=True):
+            unpack(layer.ground.seen, data)
+            layer.ground.grown()
+        if self.air is not None:
+            unpack(self.air.seen, snapshot["air"])
+            self.air.grown(_NO_POINTS)
 
     def begin_look(self) -> None:
         """Forget which obstacles are new."""

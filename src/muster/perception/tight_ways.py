@@ -1,4 +1,4 @@
-"""Ways through narrow places, in plane and space: pushed off the points that were hit, to the middle of what is free."""
+"""Ways through narrow places, in plane and space: pushed off what was hit, to the middle of what is free."""
 
 from __future__ import annotations
 

@@ -70,6 +70,8 @@ class VoxelMap:
         How many beams ended in each voxel; how many scans passed it.
     occupied : ndarray of bool
         Which voxels hold an obstacle, as far as they were seen.
+    near : ndarray of bool
+        Which voxels were seen from near; it is on the ground that this counts.
     clearances : ndarray
         From the centre of each voxel to the nearest point that was hit, in voxels; inf beyond `clearance_m`.
     """
@@ -79,6 +81,7 @@ class VoxelMap:
     hits: Counts = field(init=False)
     passes: Counts = field(init=False)
     occupied: Bools = field(init=False)
+    near: Bools = field(init=False)
     clearances: npt.NDArray[np.float32] = field(init=False)
     _sums: npt.NDArray[np.float32] = field(init=False)
     _tree: KDTree | None = field(default=None, init=False)
@@ -86,7 +89,7 @@ class VoxelMap:
     def __post_init__(self) -> None:
         shape = self.frame.shape
         self.hits, self.passes = np.zeros(shape, dtype=np.int32), np.zeros(shape, dtype=np.int32)
-        self.occupied = np.zeros(shape, dtype=np.bool_)
+        self.occupied, self.near = np.zeros(shape, dtype=np.bool_), np.zeros(shape, dtype=np.bool_)
         self._sums = np.zeros((*shape, 3), dtype=np.float32)
         self.clearances = np.full(shape, np.inf, dtype=np.float32)
 
@@ -130,6 +133,20 @@ class VoxelMap:
         places = tuple(voxels.T)
         means: Floats = self._sums[places] / np.maximum(self.hits[places], 1)[:, None]
         return self.frame.centres(voxels) + means
+
+    def offsets_in(self, cells: Indices) -> Floats:
+        """Return how far the mean points hit are from the centres of voxels (n, 3), in voxels: layer, row, column."""
+        off: Floats = (self.points_in(cells) - self.frame.centres(cells))[:, ::-1] / self.frame.cell_m
+        return off
+
+    def put(self, cells: Indices, offsets: Floats, hits: Counts) -> None:
+        """Let voxels (n, 3) be occupied, whose mean points hit are off their centres so far."""
+        at = tuple(cells.T)
+        self.hits[at] = hits
+        self._sums[at] = offsets[:, ::-1] * self.frame.cell_m * hits[:, None]
+        self.occupied[at] = True
+        self._tree = None
+        self._keep_off(cells)
 
     def tree(self) -> KDTree:
         """Return the obstacles' points (n, 3) as a tree that finds the nearest of them."""

@@ -95,6 +95,17 @@ class Exploration:
         self._visited: Counter[Point] = Counter()
         self.tasks: set[str] = set()
 
+    def resume(self, executor: Executor) -> None:
+        """Take over the tasks of frontiers of a run that was interrupted."""
+        open_ids = {task.id for task in executor.ledger.open}
+        for task in executor.ledger.tasks.values():
+            if task.priority != PRIORITY or not task.id.startswith("frontier-"):
+                continue
+            self.tasks.add(task.id)
+            of = next((one for one in self._explorers if one.robots == (task.only_robots or ())), None)
+            if task.id in open_ids and of is not None:
+                self._open[task.id] = _Frontier(task.position, of)
+
     def look(self, executor: Executor, now: float) -> None:
         """Cancel the tasks of frontiers that are none any more, and add those of new ones."""
         open_ids = {task.id for task in executor.ledger.open}

@@ -144,7 +144,8 @@ class Simulation:
             self._true_places.resume(begun.bodies.get("done_at", ()))
         if ground is not None:
             self._executor.plan_again(GroundUnknown(cell_m=ground.cell_m))
-            ground.begin(self._world, self._robots.ports, self._executor)
+            kept = None if begun is None else begun.bodies.get("map")
+            ground.begin(self._world, self._robots.ports, self._executor, kept)
         self._tick()
 
     @property
@@ -239,7 +240,8 @@ class Simulation:
         found = [] if self._camera_search is None else self._camera_search.snapshot()
         used = {name: state.used for name, state in self._executor.crew.items()}
         done_at = self._true_places.snapshot()
-        return {**self._world.snapshot(), "found": found, "used": used, "done_at": done_at}
+        ground = {} if self._ground is None else {"map": self._ground.snapshot()}
+        return {**self._world.snapshot(), **ground, "found": found, "used": used, "done_at": done_at}
 
     def result(self) -> Report:
         """What it took, so far or in all."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -40,6 +40,8 @@ LOOK_S = 0.5
 """Seconds between two scans of a robot that moves."""
 SHOW_S = 2.0
 """Seconds between two events that tell how the map has grown."""
+KEEP_S = 5.0
+"""Seconds between two snapshots of the map."""
 _ON_BORDER_M = 0.02
 """From the border of a zone in which a beam ends there."""
 _APART_CELLS = 3
@@ -99,11 +101,30 @@ class UnknownGround:
         self._turned = 0
         self._told = 0
         self._shown_s = -math.inf
+        self._kept_s, self._kept = -math.inf, dict[str, Any]()
         self.due_s = -math.inf
 
-    def begin(self, world: SimulatedWorld, ports: Mapping[str, RobotPort], executor: Executor) -> None:
-        """Scan for the first time, in a world whose robots these are."""
+    def snapshot(self) -> Mapping[str, Any]:
+        """Return the map as plain data for `begin`; it is some seconds old at most."""
+        now = self._world.time_s
+        if now >= self._kept_s + KEEP_S:
+            self._kept_s, self._kept = now, self.map.snapshot()
+        return self._kept
+
+    def begin(
+        self,
+        world: SimulatedWorld,
+        ports: Mapping[str, RobotPort],
+        executor: Executor,
+        snapshot: Mapping[str, Any] | None,
+    ) -> None:
+        """Scan for the first time, in a world whose robots these are; with the map of a run that was interrupted."""
         self._world, self._ports, self._executor = world, ports, executor
+        if snapshot is not None:
+            self.map.resume(snapshot)
+            self.paths.grown()
+            if self._exploration is not None:
+                self._exploration.resume(executor)
         self.look(world.time_s)
 
     @property
@@ -200,7 +221,7 @@ class UnknownGround:
         return scan
 
     def _are_things(self, name: str, ends: Floats, said: Mapping[str, Telemetry | None]) -> Bools:
-        """Whether a robot's beams that ended at places (n, d) met no other robot, as far as those say where they are."""
+        """Whether a robot's beams that ended at places (n, d) met no other robot, where those say that they are."""
         is_thing = np.ones(len(ends), dtype=np.bool_)
         margin_m = _APART_CELLS * self.map.cell_m
         for one, other in said.items():
