@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from muster import Map, Mission, Robot, Simulation, Task, Zone, solve
+from muster import Map, Mission, Robot, Simulation, Task, Zone, load, simulate, solve
 from muster.motion.map_world import World
+from muster.motion.maps.occupancy_rules import read_grid
 from muster_studies.unknown.scenes import hall, random_space
 
 BOTH = ("ground", "air")
@@ -166,3 +167,28 @@ def test_five_drones_explore_a_building_in_a_fraction_of_the_time_of_one():
     one, five = reports
     assert five.mission_time_s < 0.4 * one.mission_time_s
     assert min(report.ground.explored_m2 for report in reports) > 0.9 * 40 * 30
+
+
+def test_the_map_that_was_built_is_a_mission_that_muster_reads(tmp_path):
+    mission = yard(
+        block(6, 0, 1.0, 5, ceiling=2.0),
+        block(9, 2, 1.5, 6, floor=1.2, ceiling=3.0),
+        robots=[rover(), drone(place=(1.0, 6.0, 2.0))],
+        tasks={"ground": ((12.0, 4.0, 0.0), "rover"), "air": ((13.0, 6.0, 4.0), "drone")},
+    )
+    run, _, _ = carried_out(mission)
+    run.save_map(tmp_path / "built.yaml")
+    built = load(tmp_path / "built.mission.yaml")
+    floors = {zone.floor_m for zone in built.map.zones}
+    assert None in floors
+    assert len(floors) > 1
+    truth, world = World.of(mission), World.of(built)
+    air = run._ground.map.air.seen
+    points = air.points_in(np.argwhere(air.occupied))
+    assert world.clearance(points, "air").max() < 1e-3
+    corners = np.array([(x, y, zone.ceiling_m) for zone in built.map.zones for x, y in zone.polygon])
+    assert truth.clearance(corners, "air").max() < 2.1 * air.frame.cell_m
+    report = simulate(built, solve(built, "greedy"))
+    assert set(report.tasks_done) == {"ground", "air"}
+    slice_ = read_grid(Map(ros_yaml=str(tmp_path / "built.yaml")), tmp_path, [])
+    assert slice_.blocked.any()

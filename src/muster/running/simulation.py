@@ -16,7 +16,6 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.mission.supported_features import require_supported
-from muster.motion.maps.ros_yaml import write_ros_map
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
@@ -271,7 +270,7 @@ class Simulation:
         return self._camera_search
 
     def save_map(self, file: str | Path) -> None:
-        """Write the map that robots without one have built, in the form of ROS: a file (.yaml), its image beside it.
+        """Write the map that robots without one have built; see `UnknownGround.save`.
 
         Raises
         ------
@@ -280,8 +279,7 @@ class Simulation:
         """
         if self._ground is None:
             raise ParameterError(f"save_map: {file}; expected robots without a map")
-        seen = self._ground.map.ground.seen
-        write_ros_map(Path(file), seen.known, seen.occupied, seen.frame)
+        self._ground.save(Path(file))
 
     def close(self) -> None:
         """Give back what pictures hold of the graphics library, and the thread that searches."""

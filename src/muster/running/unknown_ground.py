@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,10 +19,12 @@ from muster.execution.reports.report import GroundReport, Report
 from muster.mission.model import Map, Mission, Robot
 from muster.motion.grid import Bools, Floats
 from muster.motion.map_world import Body, World, body_of
+from muster.motion.maps.ros_yaml import write_ros_map
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.unreachable_places import checked_world
 from muster.perception.explored_paths import ExploredPaths, require_travel_by_map
 from muster.perception.laser import LIDAR
+from muster.perception.map_zones import zones_of
 from muster.perception.occupancy_map import Scan
 from muster.perception.sphere_scanner import SPHERE_LIDAR
 from muster.perception.team_map import TeamMap
@@ -103,6 +106,19 @@ class UnknownGround:
         self._shown_s = -math.inf
         self._kept_s, self._kept = -math.inf, dict[str, Any]()
         self.due_s = -math.inf
+
+    def save(self, file: Path) -> None:
+        """Write the map in the form of ROS: a file (.yaml), its image (.pgm) beside it.
+
+        In space that is the ground as it is for the widest robots on it; the mission is written beside it
+        (.mission.yaml), with what was seen in the air as zones.
+        """
+        seen = self.map.ground.seen
+        write_ros_map(file, seen.known, seen.occupied, seen.frame)
+        if self.map.air is not None and self.mission.map is not None:
+            zones = (*self.mission.map.zones, *zones_of(self.map.air.seen))
+            built = replace(self.mission, map=replace(self.mission.map, zones=zones))
+            built.save(file.with_suffix(".mission.yaml"))
 
     def snapshot(self) -> Mapping[str, Any]:
         """Return the map as plain data for `begin`; it is some seconds old at most."""
