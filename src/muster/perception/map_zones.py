@@ -55,5 +55,5 @@ def _halved(occupied: Bools) -> Bools:
     """Return voxels of twice the side, occupied where one of their eight parts is."""
     padded = np.pad(occupied, [(0, n % 2) for n in occupied.shape])
     layers, rows, columns = (n // 2 for n in padded.shape)
-    halved: Bools = padded.reshape(layers, 2, rows, 2, columns, 2).any(axis=(1, 3, 5))
-    return halved
+    parts = padded.reshape(layers, 2, rows, 2, columns, 2)
+    return np.asarray(parts.any(axis=(1, 3, 5)))
