@@ -28,7 +28,7 @@ def manager_named(
     shared = _shared_roadmap(name, mission, world, margin_m, even_if_wide=closes_out)
     if shared is None:
         return None
-    lanes = [] if mission.lanes is None else limited_lanes(mission.lanes)
+    lanes = [] if mission.driven_lanes is None else limited_lanes(mission.driven_lanes)
     return ReservedTraffic(shared.plan(seed), margin_m=margin_m, lanes=lanes)
 
 
@@ -57,7 +57,7 @@ def _shared_roadmap(
     if mapped and world is None:
         world = World.of_travel(mission)
     shared = MissionRoadmap.of(mission, world if mapped else None, margin_m=margin_m)
-    if name != AUTO or mission.lanes is not None:
+    if name != AUTO or mission.driven_lanes is not None:
         return shared
     passes_in_turn = even_if_wide or shared.roadmap.narrow.any()
     if not passes_in_turn or (mapped and world is not None and cuts_off(shared, mission, world)):

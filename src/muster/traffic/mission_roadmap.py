@@ -12,9 +12,10 @@ from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Floats
 from muster.motion.map_world import World, body_of
 from muster.motion.paths import PathFinder
+from muster.motion.paths.lane_joints import ClosedLane
 from muster.traffic.journeys.roadmap_plan import RoadmapPlan
 from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
-from muster.traffic.roadmaps.given_lanes import ClosedLane, closed_lanes
+from muster.traffic.roadmaps.given_lanes import closed_lanes
 from muster.traffic.roadmaps.roadmap import MARGIN_M, Roadmap
 
 
@@ -72,11 +73,11 @@ class MissionRoadmap:
             assert isinstance(space, GridSpace | PolygonSpace)
         finder = None if space is None else PathFinder(space)
         closed: list[ClosedLane] = []
-        if mission.lanes is None:
+        if mission.driven_lanes is None:
             roadmap = Roadmap.of(space, widest.radius_m, places, margin_m=margin_m)
         else:
-            roadmap = Roadmap.of_lanes(mission.lanes, widest.radius_m, places, space=space, margin_m=margin_m)
-            closed = closed_lanes(mission.lanes, widest.radius_m, finder)
+            roadmap = Roadmap.of_lanes(mission.driven_lanes, widest.radius_m, places, space=space, margin_m=margin_m)
+            closed = closed_lanes(mission.driven_lanes, widest.radius_m, finder)
         doors = RoadmapDoors.of(mission, body_of(widest), world if space is not None else None)
         point_of = dict(zip(places, roadmap.places.tolist(), strict=True))
         return cls(roadmap, robots, point_of, tuple(closed), doors, finder)
