@@ -26,6 +26,7 @@ from muster.verification.map_paths import MapPaths
 TOLERANCE = 1e-9
 """Relative. Planner and judge add the same lengths in different orders."""
 _ON_LANE_M, _SAME_M, _PARALLEL = 1e-3, 1e-6, 1e-6
+_LANES, _STEPS = 100, 20
 _S_PER_M = 1e-6
 
 Flat = tuple[float, float]
@@ -186,45 +187,83 @@ class _RobotLanes:
             self._joined[place] = self._joint(place)
         return self._joined[place]
 
-    @cached_property
-    def _lines(self) -> tuple[Floats, Floats, Floats]:
-        """Where arcs begin, and their directions, (n, 2); and their lengths (n,)."""
-        begin = np.array([arc.start for arc in self._arcs], dtype=np.float64).reshape(-1, 2)
-        course = np.array([arc.course for arc in self._arcs])
-        return begin, np.stack([np.cos(course), np.sin(course)], axis=1), np.array([arc.metres for arc in self._arcs])
-
     def _joint(self, place: Flat) -> _Joined | None:
         if not self._arcs or not self._sees(place, place, doors_open=True):
             return None
+        for lane, at_m in self._feet(place):
+            foot = self._point(lane, at_m)
+            if self._sees(place, foot, doors_open=True):
+                return self._joined_at(place, lane, at_m)
+        return None
+
+    def _point(self, lane: int, at_m: float) -> Flat:
+        begin, along, _ = self._lines
+        x, y = (begin[lane] + at_m * along[lane]).tolist()
+        return x, y
+
+    @cached_property
+    def _arcs_of(self) -> list[list[int]]:
+        """The arcs of each lane that can be driven, its own direction first."""
+        found: dict[int, list[int]] = {}
+        for arc, lane in enumerate(self._of_lane):
+            found.setdefault(lane, []).append(arc)
+        return list(found.values())
+
+    @cached_property
+    def _lines(self) -> tuple[Floats, Floats, Floats]:
+        """Where lanes begin and their directions, (n, 2); and their lengths (n,)."""
+        first = [self._arcs[arcs[0]] for arcs in self._arcs_of]
+        begin = np.array([arc.start for arc in first], dtype=np.float64).reshape(-1, 2)
+        ends = np.array([arc.end for arc in first], dtype=np.float64).reshape(-1, 2)
+        metres = np.hypot(*(ends - begin).T)
+        return begin, (ends - begin) / metres[:, None], metres
+
+    def _feet(self, place: Flat) -> Iterator[tuple[int, float]]:
+        """Points of lanes to which a place may be joined, by metres along them: the nearest first.
+
+        They are the nearest point of each of the nearest lanes, those whole metres from it, and the lane's ends. Lanes
+        are as near in steps of a micrometre.
+        """
         begin, along, metres = self._lines
-        at_m = np.clip(((np.array(place) - begin) * along).sum(axis=1), 0.0, metres)
-        feet = begin + at_m[:, None] * along
-        away_m = np.hypot(*(np.array(place) - feet).T)
-        for k in self._nearest_first(away_m):
-            if self._sees(place, (feet[k, 0], feet[k, 1]), doors_open=True):
-                break
-        else:
-            return None
-        arc = self._arcs[k]
-        if min(at_m[k], metres[k] - at_m[k]) <= _ON_LANE_M:
-            node = arc.tail if at_m[k] < metres[k] - at_m[k] else arc.head
-            foot = self._places[node]
-            there = [_Access(one, 0.0) for one in self._leaving[node]]
-            there += [_Access(one, self._arcs[one].metres) for one in self._entering[node]]
-        else:
-            foot = (float(feet[k, 0]), float(feet[k, 1]))
-            across = np.abs(along[:, 0] * along[k, 1] - along[:, 1] * along[k, 0])
-            same = (np.hypot(*(feet - feet[k]).T) <= _SAME_M) & (across <= _PARALLEL)
-            there = [_Access(int(one), float(at_m[one])) for one in np.flatnonzero(same)]
+        nearest = np.clip(((np.array(place) - begin) * along).sum(axis=1), 0.0, metres)
+        away = np.rint(np.hypot(*(np.array(place) - begin - nearest[:, None] * along).T) / _SAME_M)
+        first = int(np.argmin(away))
+        yield first, float(nearest[first])
+        found: list[tuple[int, int, float]] = []
+        for lane in np.argsort(away, kind="stable")[:_LANES].tolist():
+            steps = (min(max(nearest[lane] + k, 0.0), metres[lane]) for k in range(-_STEPS, _STEPS + 1))
+            ways = {*map(float, steps), 0.0, float(metres[lane])}
+            found += [(round(math.dist(place, self._point(lane, m)) / _SAME_M), lane, m) for m in ways]
+        for _, lane, at_m in sorted(found):
+            yield lane, at_m
+
+    def _joined_at(self, place: Flat, lane: int, at_m: float) -> _Joined:
+        """A place joined at a point of a lane: a node, or a point of that lane and those that lie along it."""
+        begin, along, metres = self._lines
+        if min(at_m, metres[lane] - at_m) <= _ON_LANE_M:
+            own = self._arcs[self._arcs_of[lane][0]]
+            return self._at_node(place, own.tail if at_m <= _ON_LANE_M else own.head)
+        foot = self._point(lane, at_m)
+        off = np.array(foot) - begin
+        forward, aside = (off * along).sum(axis=1), np.abs(off[:, 0] * along[:, 1] - off[:, 1] * along[:, 0])
+        angle = np.abs(along[:, 0] * along[lane, 1] - along[:, 1] * along[lane, 0])
+        beyond = np.maximum(-forward, forward - metres)
+        there: list[_Access] = []
+        for k in np.flatnonzero((np.hypot(aside, beyond.clip(min=0)) <= _SAME_M) & (angle <= _PARALLEL)).tolist():
+            to_m = float(forward[k]), float(metres[k] - forward[k])
+            there += [_Access(arc, m) for arc, m in zip(self._arcs_of[k], to_m, strict=False)]
+        return self._stub(place, foot, there)
+
+    def _at_node(self, place: Flat, node: str) -> _Joined:
+        there = [_Access(arc, 0.0) for arc in self._leaving[node]]
+        there += [_Access(arc, self._arcs[arc].metres) for arc in self._entering[node]]
+        return self._stub(place, self._places[node], there)
+
+    def _stub(self, place: Flat, foot: Flat, there: list[_Access]) -> _Joined:
         stub_m = math.dist(place, foot)
         if stub_m <= _ON_LANE_M:
             return _Joined(place, foot, 0.0, tuple(there), is_open=True)
         return _Joined(place, foot, stub_m, tuple(there), is_open=self._sees_now(place, foot))
-
-    def _nearest_first(self, away_m: Floats) -> Iterator[int]:
-        """The arcs by their distance in steps of a micrometre, and by the order of their lanes in the mission."""
-        steps = np.rint(away_m / _SAME_M)
-        yield from np.lexsort((np.array(self._of_lane), steps)).tolist()
 
     # --- ways ---
 

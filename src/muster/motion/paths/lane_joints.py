@@ -5,8 +5,10 @@ Planner and traffic take the same points, so that what is planned is what is dri
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -20,6 +22,9 @@ SAME_M = 1e-6
 ON_LANE_M = 1e-3
 """A place that is no farther from a lane is on it, and one that is no farther from an end of it is at the node."""
 
+_LANES, _STEPS = 100, 20
+"""So many lanes are looked at where the way to the nearest point of all is not free, and so many metres each way of the
+nearest point of each."""
 _PARALLEL = 1e-6  # rad: lanes that differ by no more lie along each other
 
 Sees = Callable[[Floats], bool]
@@ -103,38 +108,56 @@ class Joints:
         return cls(some, places[nodes].reshape(-1, 2, 2), nodes, sees)
 
     def joint(self, place: Floats) -> Joint | None:
-        """Return where a place (2,) is joined: at the nearest of the lanes' nearest points to which the way is free."""
+        """Return where a place (2,) is joined: at the nearest point of a lane to which the straight way is free."""
         if not len(self.numbers) or (self.sees is not None and not self.sees(np.stack([place, place]))):
             return None
-        starts, along = self.ends[:, 0], self.ends[:, 1] - self.ends[:, 0]
+        starts, along, metres = self._lines
+        nearest_m = np.clip(np.einsum("ij,ij->i", place - starts, along), 0.0, metres)
+        away_m = np.linalg.norm(place - starts - nearest_m[:, np.newaxis] * along, axis=1)
+        first = int(np.argmin(np.rint(away_m / SAME_M)))
+        found: tuple[int, float] | None = (first, float(nearest_m[first]))
+        if not self._leads(place, first, float(nearest_m[first])):
+            found = next((one for one in self._further(place, nearest_m, away_m) if self._leads(place, *one)), None)
+        return None if found is None else self._joint(place, *found)
+
+    def _joint(self, place: Floats, lane: int, at_m: float) -> Joint:
+        starts, along, metres = self._lines
+        for end, to_end_m in enumerate((at_m, metres[lane] - at_m)):
+            if to_end_m <= ON_LANE_M:
+                at = self.ends[lane, end]
+                return Joint(at, float(np.linalg.norm(place - at)), (), int(self.nodes[lane, end]))
+        at = starts[lane] + at_m * along[lane]
+        own_m = np.einsum("ij,ij->i", at - starts, along)
+        off_m = np.linalg.norm(at - starts - np.clip(own_m, 0.0, metres)[:, np.newaxis] * along, axis=1)
+        aside = np.abs(along[:, 0] * along[lane, 1] - along[:, 1] * along[lane, 0])
+        same = np.flatnonzero((off_m <= SAME_M) & (aside <= _PARALLEL))
+        on = tuple((int(self.numbers[k]), float(own_m[k])) for k in same.tolist())
+        return Joint(at, float(np.linalg.norm(place - at)), on, -1)
+
+    def _further(self, place: Floats, nearest_m: Floats, away_m: Floats) -> Iterator[tuple[int, float]]:
+        """Points of the nearest lanes, near ones first: the nearest of each, those whole metres from it, its ends."""
+        starts, along, metres = self._lines
+        lanes = np.argsort(np.rint(away_m / SAME_M), kind="stable")[:_LANES]
+        steps = np.concatenate([[-math.inf], np.arange(-_STEPS, _STEPS + 1), [math.inf]])
+        at_m = np.clip(nearest_m[lanes, np.newaxis] + steps, 0.0, metres[lanes, np.newaxis])
+        points = starts[lanes, np.newaxis] + at_m[..., np.newaxis] * along[lanes, np.newaxis]
+        far = np.rint(np.linalg.norm(place - points, axis=2) / SAME_M)
+        which = np.broadcast_to(self.numbers[lanes, np.newaxis], far.shape)
+        for k in np.lexsort((at_m.ravel(), which.ravel(), far.ravel())).tolist():
+            row, column = divmod(k, len(steps))
+            yield int(lanes[row]), float(at_m[row, column])
+
+    def _leads(self, place: Floats, lane: int, at_m: float) -> bool:
+        """Whether the straight way from a place to a point of a lane is free."""
+        starts, along, _ = self._lines
+        return self.sees is None or self.sees(np.stack([place, starts[lane] + at_m * along[lane]]))
+
+    @cached_property
+    def _lines(self) -> tuple[Floats, Floats, Floats]:
+        """Where the lanes begin and their directions, (m, 2), and their lengths (m,), metres."""
+        along = self.ends[:, 1] - self.ends[:, 0]
         metres = np.linalg.norm(along, axis=1)
-        shares = np.clip(np.einsum("ij,ij->i", place - starts, along) / metres**2, 0.0, 1.0)
-        feet = starts + shares[:, np.newaxis] * along
-        away_m = np.linalg.norm(place - feet, axis=1)
-        nearest = next((k for k in self._nearest_first(away_m) if self._leads(place, feet[k])), None)
-        if nearest is None:
-            return None
-        at_m = shares[nearest] * metres[nearest]
-        ends = np.array([at_m, metres[nearest] - at_m])
-        if ends.min() <= ON_LANE_M:
-            end = int(ends.argmin())
-            at = self.ends[nearest, end]
-            return Joint(at, float(np.linalg.norm(place - at)), (), int(self.nodes[nearest, end]))
-        directions = along / metres[:, np.newaxis]
-        aside = np.abs(directions[:, 0] * directions[nearest, 1] - directions[:, 1] * directions[nearest, 0])
-        same = np.flatnonzero((np.linalg.norm(feet - feet[nearest], axis=1) <= SAME_M) & (aside <= _PARALLEL))
-        on = tuple((int(self.numbers[k]), float(shares[k] * metres[k])) for k in same.tolist())
-        return Joint(feet[nearest], float(away_m[nearest]), on, -1)
-
-    def _nearest_first(self, away_m: Floats) -> Iterator[int]:
-        steps = np.rint(away_m / SAME_M)
-        if self.sees is None:
-            yield int(np.argmin(steps))
-        else:
-            yield from np.argsort(steps, kind="stable").tolist()
-
-    def _leads(self, place: Floats, foot: Floats) -> bool:
-        return self.sees is None or self.sees(np.stack([place, foot]))
+        return self.ends[:, 0], along / metres[:, np.newaxis], metres
 
 
 class JoinedLanes(NamedTuple):
