@@ -109,7 +109,9 @@ def lane_network(
     stubs = [way for stub in own.stubs for way in (stub, stub[::-1])]
     pairs = np.reshape(np.array(edges + stubs, dtype=np.int64), (-1, 2))
     known = np.append(clearance, np.zeros(len(stubs)))
-    made = Network(np.array(points), np.ones(len(points), dtype=np.bool_), pairs, known, np.array(own.numbers))
+    made = Network(
+        np.array(points), np.ones(len(points), dtype=np.bool_), pairs, known, np.array(own.numbers, dtype=np.int64)
+    )
     return LaneNetwork(made, np.append(speeds, np.full(len(stubs), np.inf)), tuple(parts))
 
 
