@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "infinity.hpp"
+#include "traffic/joint_moves.hpp"
 
 namespace muster {
 
 namespace {
 
 constexpr double kTailsToLeave[] = {4.0, 25.0};
+constexpr int kExpansions = 20'000;
 constexpr int kGroup = 4;          // travellers that are planned anew at a time
 constexpr int kMoreWhereLost = 4;  // times as many ways are sought where some find none
 
@@ -27,6 +29,7 @@ SharedWays::SharedWays(SafeIntervals& roadmap, std::vector<Traveller> travellers
   clear();
   for (int k = 0; k < static_cast<int>(n); ++k) find_alone(k);
   plan_all();
+  if (cost().first > 0) plan_together();
   improve(ways);
 }
 
@@ -48,6 +51,18 @@ void SharedWays::plan_all() {
   put_on_all_but({});
 }
 
+void SharedWays::plan_together() {
+  const auto moves = joint_moves(roadmap_.roadmap(), now_.travellers, roadmap_.margin(), roadmap_.to_goals(),
+                                 kExpansions, random_.next());
+  if (!moves) return;
+  const Cost before = cost();
+  std::vector<Way> ways = ways_of(*roadmap_.roadmap(), now_.travellers, roadmap_.margin(), *moves);
+  std::swap(ways, now_.ways);
+  if (!(cost() < before)) std::swap(ways, now_.ways);
+  clear();
+  put_on_all_but({});
+}
+
 void SharedWays::change(const std::vector<std::pair<int, Traveller>>& changes, int ways) {
   before_ = now_;
   std::vector<int> changed;
@@ -65,6 +80,7 @@ void SharedWays::change(const std::vector<std::pair<int, Traveller>>& changes, i
 
 void SharedWays::clear() {
   roadmap_.clear();
+  for (const Traveller& who : now_.travellers) roadmap_.want(who);
   for (int k = 0; k < static_cast<int>(now_.travellers.size()); ++k)
     if (now_.travellers[k].fixed) roadmap_.reserve(k, now_.travellers[k], now_.ways[k]);
 }
