@@ -52,9 +52,6 @@ class SafeIntervals {
   SafeIntervals(std::shared_ptr<const AnnotatedRoadmap> roadmap, std::vector<bool> rests, double margin);
 
   int points() const { return roadmap_->size(); }
-  const std::shared_ptr<const AnnotatedRoadmap>& roadmap() const { return roadmap_; }
-  double margin() const { return margin_; }
-  GoalTables<std::vector<double>>& to_goals() { return to_goals_; }
   // What it costs to come to a point from each, kept from one plan to the next.
   const std::vector<double>& metres_to(int goal);
 

@@ -6,14 +6,12 @@
 #include <utility>
 
 #include "infinity.hpp"
-#include "traffic/joint_moves.hpp"
 
 namespace muster {
 
 namespace {
 
 constexpr double kTailsToLeave[] = {4.0, 25.0};
-constexpr int kExpansions = 20'000;
 constexpr int kGroup = 4;          // travellers that are planned anew at a time
 constexpr int kMoreWhereLost = 4;  // times as many ways are sought where some find none
 
@@ -29,7 +27,6 @@ SharedWays::SharedWays(SafeIntervals& roadmap, std::vector<Traveller> travellers
   clear();
   for (int k = 0; k < static_cast<int>(n); ++k) find_alone(k);
   plan_all();
-  if (cost().first > 0) plan_together();
   improve(ways);
 }
 
@@ -47,18 +44,6 @@ void SharedWays::plan_all() {
     best = now_;
   }
   now_ = *std::move(best);
-  clear();
-  put_on_all_but({});
-}
-
-void SharedWays::plan_together() {
-  const auto moves = joint_moves(roadmap_.roadmap(), now_.travellers, roadmap_.margin(), roadmap_.to_goals(),
-                                 kExpansions, random_.next());
-  if (!moves) return;
-  const Cost before = cost();
-  std::vector<Way> ways = ways_of(*roadmap_.roadmap(), now_.travellers, roadmap_.margin(), *moves);
-  std::swap(ways, now_.ways);
-  if (!(cost() < before)) std::swap(ways, now_.ways);
   clear();
   put_on_all_but({});
 }

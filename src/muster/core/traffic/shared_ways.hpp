@@ -58,8 +58,6 @@ class SharedWays {
   // And all others but some.
   void put_on_all_but(std::span<const int> group);
   void plan_all();
-  // Instead of ways found one after the other: all together, where some of those find no way.
-  void plan_together();
   void find_alone(int traveller);
   void plan(std::span<const int> group);
   void improve(int ways);

@@ -12,9 +12,13 @@
 #include "random.hpp"
 #include "traffic/annotated_roadmap.hpp"
 #include "traffic/lacam.hpp"
-#include "traffic/roadmap_steps.hpp"
 
 namespace muster {
+
+struct SingleMove {
+  int robot;
+  int edge;
+};
 
 struct MovingTeam {
   static constexpr int kNoGoal = -1;
