@@ -60,3 +60,23 @@ def test_where_robots_drive_home_only_their_homes_count():
 def test_robots_without_a_radius_or_in_the_air_close_nobody_out():
     assert not can_close_out(mission(block(3, 3), radius_m=0.0))
     assert not can_close_out(mission(block(3, 3), kind="air"))
+
+
+@pytest.mark.parametrize(("inner", "outer", "closes"), [(0.3, 0.3, False), (0.3, 0.55, True), (0.55, 0.3, True)])
+def test_who_gets_through_between_two_depends_on_these_three(inner, outer, closes):
+    """Ends 1.25 m apart, each for one robot: those of the ring, and the one in its middle."""
+    places = block(3, 3, 1.25)
+    robots = tuple(
+        Robot(id=f"r_{k}", position=(3.0 * k, -50.0), radius_m=inner if place == (1.25, 1.25) else outer)
+        for k, place in enumerate(places)
+    )
+    tasks = tuple(Task(id=f"t_{k}", position=place, only_robots=(f"r_{k}",)) for k, place in enumerate(places))
+    assert can_close_out(Mission(robots=robots, tasks=tasks)) is closes
+
+
+def test_a_wide_robot_far_away_closes_no_gap_between_small_ones():
+    places = block(3, 3, 1.25)
+    small = mission(places)
+    wide = Robot(id="wide", position=(0.0, 50.0), radius_m=0.8)
+    tasks = tuple(replace(task, only_robots=tuple(robot.id for robot in small.robots)) for task in small.tasks)
+    assert not can_close_out(replace(small, robots=(*small.robots, wide), tasks=tasks))

@@ -174,8 +174,11 @@ def corridor_hall(width):
 
 
 def sized(shape, radii, places=()):
-    layers = [layer_of_space(PolygonSpace(free_region(shape, [], one)), one, places, margin_m=MARGIN) for one in radii]
-    return Roadmap.joined(layers, MARGIN)
+    team = tuple(robot(f"r{radius}", radius, places[0] if places else (3.0, 3.0)) for radius in radii)
+    tasks = tuple(Task(id=f"t{k}", position=place) for k, place in enumerate(places[1:]))
+    return MissionRoadmap.of(
+        Mission(robots=team, tasks=tasks, map=Map(boundary=tuple(shape.exterior.coords)[:-1]))
+    ).roadmap
 
 
 def in_corridor(roadmap, layer):
@@ -202,7 +205,7 @@ def test_a_wide_robot_rests_where_small_ones_get_past_it():
     assert roadmap.holding[roadmap.layer == 1].any()
 
 
-@pytest.mark.parametrize(("width", "passes"), [(1.8, False), (3.0, True)])
+@pytest.mark.parametrize(("width", "passes"), [(1.8, False), (2.1, True), (2.2, True), (3.0, True)])
 def test_a_wide_and_a_small_robot_swap_only_where_the_corridor_holds_both(width, passes):
     """In a dead end, each to where the other is."""
     roadmap = sized(shapely.box(0, 0, 6, width), (0.3, 0.7), [(1.0, 0.9), (5.0, 0.9)])

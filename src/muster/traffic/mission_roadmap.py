@@ -15,6 +15,7 @@ from muster.motion.paths.lane_joints import ClosedLane
 from muster.traffic.journeys.roadmap_plan import RoadmapPlan
 from muster.traffic.roadmaps.doors import RoadmapDoors
 from muster.traffic.roadmaps.given_lanes import closed_lanes
+from muster.traffic.roadmaps.passing_rows import with_passing_rows
 from muster.traffic.roadmaps.roadmap import MARGIN_M, Layer, Roadmap, layer_of_lanes, layer_of_space
 from muster.traffic.roadmaps.robot_sizes import same_ways, sizes
 from muster.traffic.roadmaps.robot_spaces import RobotSpaces
@@ -82,7 +83,7 @@ class MissionRoadmap:
         ]
         places = [list(dict.fromkeys(place[:2] for place in _places(mission, own))) for own in owners]
         layers = tuple(map(maker.layer, radii_m, places))
-        roadmap = Roadmap.joined(layers, margin_m)
+        roadmap = maker.joined(layers)
         points = iter(roadmap.places.tolist())
         return cls(
             roadmap=roadmap,
@@ -110,7 +111,7 @@ class MissionRoadmap:
         places = list(dict.fromkeys(place for points in self.point_of for place in points))
         every = sizes([*made, *radii_m], self.maker.alike)
         layers = [made[radius_m] if radius_m in made else self.maker.layer(radius_m, places) for radius_m in every]
-        return Roadmap.joined(layers, self.roadmap.margin_m)
+        return self.maker.joined(layers)
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,6 +127,14 @@ class _Maker:
         if self.lanes is None:
             return layer_of_space(space, radius_m, places, margin_m=self.margin_m)
         return layer_of_lanes(self.lanes, radius_m, places, space=space, margin_m=self.margin_m)
+
+    def joined(self, layers: Sequence[Layer]) -> Roadmap:
+        """The roadmap of some layers, of the narrowest robots first."""
+        if self.lanes is None:
+            radii_m = [layer.radius_m for layer in layers]
+            made = with_passing_rows([layer.made for layer in layers], radii_m, self.spaces, self.margin_m)
+            layers = [layer._replace(made=one) for layer, one in zip(layers, made, strict=True)]
+        return Roadmap.joined(layers, self.margin_m)
 
     def closed_lanes(self, radius_m: float) -> tuple[ClosedLane, ...]:
         return () if self.lanes is None else tuple(closed_lanes(self.lanes, radius_m, self.spaces.finder(radius_m)))

@@ -179,7 +179,10 @@ bool MakingRoom::is_free(int k, const Vec<3>& place) const {
   const double away = norm(place - robots_[k].position), radius = robots_[k].body.radius + largest_radius_;
   std::vector<int> around;
   tree_.near(k, {kAround, away + 4.0 * radius}, around);
-  return std::none_of(around.begin(), around.end(), [&](int j) { return claims(j, k, place, kClaimedPieces, 0.0); });
+  return std::none_of(around.begin(), around.end(), [&](int j) {
+    const double reach = away + 4.0 * (robots_[k].body.radius + robots_[j].body.radius);
+    return norm(robots_[j].position - robots_[k].position) <= reach && claims(j, k, place, kClaimedPieces, 0.0);
+  });
 }
 
 bool MakingRoom::claims(int j, int k, const Vec<3>& place, int pieces, double spare) const {

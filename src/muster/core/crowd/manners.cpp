@@ -98,7 +98,14 @@ Vec<3> Manners::wanted(int i, const Vec<3>& course) const {
   const double radius = robot.body.radius;
   const double stop = Braking{dt_, robot.body.acceleration}.distance(robot.top_speed());
   std::vector<int> near;
-  if (robot.turned_aside || arrived_before) tree_.near(i, {8, radius + largest_radius_ + std::max(radius, stop)}, near);
+  if (robot.turned_aside || arrived_before) {
+    const double beside = radius + std::max(radius, stop);
+    tree_.near(i, {8, beside + largest_radius_}, near);
+    // A large robot far away widens the search, and not what counts as near to others.
+    std::erase_if(near, [&](int k) {
+      return norm(robots_[k].position - robot.position) > beside + robots_[k].body.radius;
+    });
+  }
   if (!robot.turned_aside && near.empty()) {
     robot.waits = false;
     return course;

@@ -20,31 +20,41 @@ def can_close_out(mission: Mission) -> bool:
     Walls are not looked at.
     """
     robots = [robot for robot in mission.all_robots if drives(robot)]
-    ends = _ends(mission)
-    if len(robots) < 2 or not len(ends):
+    widest = _widest_at_ends(mission)
+    if len(robots) < 2 or not widest:
         return False
-    gap_m = 4 * max(robot.radius_m for robot in robots)  # between two at rest, through which none of them gets
-    beside = _Beside(ends, gap_m)
+    ends, radii_m = np.array(list(widest)), np.array(list(widest.values()))
     inner_first = np.argsort(np.hypot(*(ends - ends.mean(axis=0)).T), kind="stable")
-    return any(beside.rings(int(k), len(robots) - 1) for k in inner_first)
+    beside = {radius_m: _Beside(ends, radii_m, radius_m) for radius_m in np.unique(radii_m).tolist()}
+    return any(beside[float(radii_m[k])].rings(int(k), len(robots) - 1) for k in inner_first)
 
 
-def _ends(mission: Mission) -> Floats:
-    """Where robots that drive may come to rest, (n, 2) metres: their own ends, or where their last task leaves them."""
-    robots = list(filter(drives, mission.all_robots))
-    own = [robot.place_at_end(mission.rules) for robot in robots]
-    anywhere = [robot for robot, end in zip(robots, own, strict=True) if end is None]
-    exits = [motion.exit for motion in task_motions(mission, anywhere)]
-    ends = sorted({(end[0], end[1]) for end in [*own, *exits] if end is not None})
-    return np.array(ends).reshape(-1, 2)
+def _widest_at_ends(mission: Mission) -> dict[tuple[float, float], float]:
+    """Where robots that drive may come to rest: their ends, or where their last task leaves them.
+
+    For each place, in metres, the radius of the widest robot that may rest there.
+    """
+    found: dict[tuple[float, float], float] = {}
+    for robot in filter(drives, mission.all_robots):
+        own = robot.place_at_end(mission.rules)
+        ends = [motion.exit for motion in task_motions(mission, [robot])] if own is None else [own]
+        for x, y, *_ in ends:
+            found[x, y] = max(robot.radius_m, found.get((x, y), 0.0))
+    return dict(sorted(found.items()))
 
 
 class _Beside:
-    """Which ends, (n, 2) metres, are so close that nobody gets through between robots that stand there."""
+    """Which ends, (n, 2) metres, are so close that a robot does not get through between two that stand there.
 
-    def __init__(self, ends: Floats, gap_m: float) -> None:
+    Those have radii (n,), and the robot has one.
+    """
+
+    def __init__(self, ends: Floats, radii_m: Floats, radius_m: float) -> None:
         self._ends = ends
-        near = [np.flatnonzero(np.hypot(*(ends - end).T) < gap_m) for end in ends]
+        gaps_m = 2 * radius_m + radii_m
+        near = [
+            np.flatnonzero(np.hypot(*(ends - end).T) < gaps_m + own_m) for end, own_m in zip(ends, radii_m, strict=True)
+        ]
         pairs = [(a, b) for a, others in enumerate(near) for b in others.tolist() if a < b]
         self._pairs: NDArray[np.int_] = np.array(pairs, dtype=int).reshape(-1, 2)
         self._of: list[list[tuple[int, int]]] = [[] for _ in ends]
