@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import islice
 
 from muster.execution.goods_beside import fetching_place
 from muster.execution.record import Tell
@@ -15,6 +16,7 @@ from muster.execution.robots.work_orders import stop_work
 from muster.execution.stations.slots import AT_STATION, Stations
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.model import Event, Mission, Robot, Task
+from muster.mission.task_relations import tasks_named_by
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
 from muster.motion.leg_times import LegTimes
@@ -170,8 +172,11 @@ class Changes:
     def _require_fit(self, what: str, *, robots: tuple[Robot, ...] = (), tasks: tuple[Task, ...] = ()) -> None:
         """A mission with these robots and tasks, and those that there are, must be one."""
         there = {robot.id: robot for robot in (*self.mission.robots, *(one.robot for one in self.crew.values()))}
+        beside: Iterable[Task] = self.ledger.tasks.values()
+        if not robots and not any(map(tasks_named_by, tasks)):  # what names no other fits however many there are
+            beside = islice(beside, 1)
         try:
-            self.mission.at_once(robots=(*there.values(), *robots), tasks=(*self.ledger.tasks.values(), *tasks))
+            self.mission.at_once(lanes=None, robots=(*there.values(), *robots), tasks=(*beside, *tasks))
         except MissionError as error:
             found = error.findings[0]
             name = [*(robot.id for robot in robots), *(task.id for task in tasks)][0]

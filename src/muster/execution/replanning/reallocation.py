@@ -55,6 +55,8 @@ class Revision:
         tasks that had no robot and have one now, and the other way round.
     left_out
         every open task that no robot does, and why.
+    is_part
+        whether it is a plan of some robots alone: the others go on as they did, and tasks left out before stay so.
     """
 
     routes: Mapping[str, tuple[str, ...]]
@@ -65,6 +67,7 @@ class Revision:
     dropped: tuple[str, ...]
     left_out: Mapping[str, str]
     calls: Mapping[str, tuple[Call, ...]] = field(default_factory=dict)
+    is_part: bool = False
 
     def difference(self) -> dict[str, Any]:
         """What has changed, as plain data: robots of tasks moved and added, reasons of tasks dropped."""
