@@ -490,7 +490,8 @@ class Executor:
         self.emit(Replanned(causes=tuple(causes), **revision.difference(), left_out=left_out))
         if revision.is_part:
             routes = {name: tuple(self.crew[name].route) for name in revision.routes}
-            self.state.apply(PlanAdopted(routes=routes, left_out=dict.fromkeys(revision.added)).at(self.now_s))
+            why = {**dict.fromkeys(revision.added), **revision.left_out}
+            self.state.apply(PlanAdopted(routes=routes, left_out=why).at(self.now_s))
             self._observer.on_plan(self.now_s, self.plan)
             return
         plan = whole_plan(self.mission, self.planned, self.crew, self.ledger, revision.left_out)
@@ -507,7 +508,7 @@ class Executor:
         if improver is None:
             return
         found = improver.found(self.now_s)
-        better = None if found is None else self._insertion.merged(self._rest(), found)
+        better = self._better(found) if found else None
         if better is not None:
             self._adopt(better, [{"kind": IMPROVED}])
             self._go_on()
@@ -518,6 +519,12 @@ class Executor:
         ):
             self._plans_searched = self.state.replanned
             improver.begin(self._rest())
+
+    def _better(self, found: Mapping[str, Sequence[str]]) -> Revision | None:
+        """Routes that a search has found, as far as they are worth it now; None: none is."""
+        part = None if self.mission.stations else self._near.around(found)
+        better = self._insertion.merged(self._rest(part), found)
+        return better if better is None or part is None else replace(better, is_part=True)
 
     def _forget(self) -> None:
         """Of a standing fleet what is long done is forgotten."""

@@ -45,15 +45,30 @@ class NearRobots:
         Orders that name other tasks, or are for several robots, are planned with the whole fleet, and so are all where
         robots share stations, or a task of a route in the part is tied to one outside.
         """
-        present = [state for state in self.crew.values() if not state.out]
-        routed = sum(len(state.route) for state in present)
-        if routed < 4 * PART_TASKS or not all(map(self._is_alone, orders)):
+        present = self._present
+        if sum(len(state.route) for state in present) < 4 * PART_TASKS or not all(map(self._is_alone, orders)):
             return None
         robots = dict.fromkeys(name for order in orders for name in self._nearest(self.ledger.tasks[order], present))
-        tasks = [*orders, *dict.fromkeys(task for name in robots for task in self.crew[name].route)]
+        return self._part(robots, orders)
+
+    def around(self, routes: Mapping[str, Sequence[str]]) -> Part | None:
+        """The part of the mission in which robots may get other routes: they, and those whose tasks are in these."""
+        tasks = {name for route in routes.values() for name in route}
+        robots = [s.robot.id for s in self._present if s.robot.id in routes or not tasks.isdisjoint(s.route)]
+        return self._part(robots, ())
+
+    @property
+    def _present(self) -> list[RobotState]:
+        return [state for state in self.crew.values() if not state.out]
+
+    def _part(self, robots: Collection[str], more: Collection[str]) -> Part | None:
+        """Robots with the tasks of their routes, and more; None: that is no small part, or is tied to what is not."""
+        tasks = [*more, *dict.fromkeys(task for name in robots for task in self.crew[name].route)]
         named = {name for task in tasks for name in tasks_named_by(self.ledger.tasks[task])}
-        is_small = 2 * len(tasks) <= routed and bool(robots)
-        return Part(robots, tasks) if is_small and not any(map(self.ledger.is_open, named)) else None
+        routed = sum(len(state.route) for state in self._present)
+        if not robots or 2 * len(tasks) > routed or routed < 4 * PART_TASKS or any(map(self.ledger.is_open, named)):
+            return None
+        return Part(robots, tasks)
 
     def _is_alone(self, order: str) -> bool:
         return not self.ledger.is_joint(order) and not tasks_named_by(self.ledger.tasks[order])

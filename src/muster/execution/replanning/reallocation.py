@@ -20,6 +20,7 @@ from muster.allocation.stop import Stop
 from muster.execution.replanning.remaining_problem import RemainingMission, RemainingProblem, remaining_problem
 from muster.execution.replanning.route_ahead import RouteAhead, route_ahead, stops_of
 from muster.execution.replanning.travel import Travel
+from muster.execution.replanning.worthwhile import worthwhile
 from muster.execution.robots.station_calls import Call
 from muster.mission.errors import ParameterError
 from muster.mission.plan import RouteStop, Unassigned, teams_of
@@ -97,6 +98,8 @@ class Reallocation:
         plan so far, and a search begins at a low temperature for that; another one plans all that is left afresh.
     fill_waiting
         whether waiting is made less afterwards, by `rewiring`.
+    for_a_gain
+        whether a task changes robots only where that is worth it (see `worthwhile`), as in a search in the background.
 
     Raises
     ------
@@ -110,6 +113,7 @@ class Reallocation:
     allocator: Allocator = SEARCH
     parameters: Any = Parameters(**REPLANNING)
     fill_waiting: bool = False
+    for_a_gain: bool = False
 
     def __post_init__(self) -> None:
         if not self.allocator.keeps_fixed:
@@ -131,6 +135,8 @@ class Reallocation:
             routes, forced = self._stable(problem, start, _robots_of(problem, before), forced, stable)
         if self.fill_waiting:
             routes = rewired(problem, routes)
+        if self.for_a_gain:
+            routes = worthwhile(problem, start, routes, rest.headings)
         return revision_of(rest, what, routes, forced)
 
     def _stable(

@@ -17,6 +17,7 @@ import numpy as np
 from muster.allocation.fixed import admissible_alone
 from muster.execution.replanning.relations import BY_WHICH_TASKS_ARE_BOUND, Binding
 from muster.execution.replanning.travel import Spot, Travel
+from muster.execution.replanning.worthwhile import Heading
 from muster.mission.goods import Amount, as_amount, by_commodity
 from muster.mission.model import Mission, Robot, Station, Task
 from muster.model.energy_under_way import Held, with_held
@@ -58,6 +59,8 @@ class RobotSnapshot:
         what it has done by then, work under way included.
     left_s
         when it left its start; None: it has not.
+    heading
+        the task that it is on the way to, or waits at; None: there is none.
     """
 
     robot: Robot
@@ -71,6 +74,7 @@ class RobotSnapshot:
     load: Mapping[str, float] = field(default_factory=dict)
     done: tuple[Task, ...] = ()
     left_s: float | None = None
+    heading: Heading | None = None
 
     @property
     def has_past(self) -> bool:
@@ -128,6 +132,11 @@ class RemainingMission:
     aboard: Mapping[str, Sequence[str]] = field(default_factory=dict)
     objective: str | None = None
     on_duty: bool = False
+
+    @property
+    def headings(self) -> dict[str, Heading]:
+        """By robot that is on the way to a task, or waits at it, that task."""
+        return {one.robot.id: one.heading for one in self.crew if one.heading is not None}
 
 
 def frozen(rest: RemainingMission) -> RemainingMission:

@@ -10,6 +10,7 @@ from muster.execution.replanning.relations import as_bound, binding_of
 from muster.execution.replanning.remaining_problem import RemainingMission, RobotSnapshot
 from muster.execution.replanning.transports import deliveries_aboard, load_after_work, on_board, transports
 from muster.execution.replanning.travel import Spot
+from muster.execution.replanning.worthwhile import NEARLY_THERE_S, Heading
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.station_calls import with_calls
 from muster.execution.stations.slots import AT_STATION, Stations
@@ -145,7 +146,16 @@ def _snapshot(
         load=load,
         done=done,
         left_s=state.known.left_s,
+        heading=_heading(state),
     )
+
+
+def _heading(state: RobotState) -> Heading | None:
+    """The task that a robot is on the way to, or waits at."""
+    waits = state.activity is Activity.WAITING
+    if not state.route or not (waits or state.activity is Activity.DRIVING):
+        return None
+    return Heading(state.route[0], waits or state.travel_left_s <= NEARLY_THERE_S)
 
 
 def _held(state: RobotState, now: float, stations: Stations) -> Held | None:
