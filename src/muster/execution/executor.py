@@ -42,7 +42,7 @@ from muster.execution.timing.forecast import Forecast
 from muster.execution.timing.outlooks import Outlooks
 from muster.execution.timing.punctuality import Punctuality
 from muster.mission.errors import ParameterError
-from muster.mission.model import Event, Mission, Robot
+from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
@@ -142,8 +142,9 @@ class Executor:
         self._near = NearRobots(self.ledger, self.crew)
         self._observer = NoObserver() if observer is None else observer
         self._asked: list[ExecutionEvent] = []
+        leader = NoLeader() if leader is None else leader
         self._changes = Changes(
-            mission, self.state, self.crew, ports, self._travel, self.stations, self._ask, way, on_doors
+            mission, self.state, self.crew, ports, self._travel, self.stations, self._ask, way, on_doors, leader.moved
         )
         self._alone = peers is None
         self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)
@@ -185,7 +186,7 @@ class Executor:
             self.emit,
             self._ask,
             now,
-            NoLeader() if leader is None else leader,
+            leader,
         )
         self._deadlocks = Deadlocks(self.ledger, self.crew, self._beginning, self._punctuality, self._ask)
         self._forgetting = Forgetting(self.ledger, self.crew, self._forecast, self._standing.keep_s, self.emit)
@@ -273,9 +274,17 @@ class Executor:
             if state.activity is Activity.WORKING:
                 state.send_again(self.now_s)
 
-    def require_newcomer(self, robot: Robot) -> None:
-        """Raise ParameterError where a robot cannot join; its port need not be there yet."""
-        self._changes.require_newcomer(robot)
+    def require_room(self, event: Event) -> None:
+        """Raise ParameterError where an event brings a robot that cannot join, or puts one where it cannot stand.
+
+        The port of one that joins need not be there yet.
+        """
+        if event.robot_joins is not None:
+            self._changes.require_newcomer(event.robot_joins)
+        elif event.robot_moved is not None:
+            self._changes.require_place(event.robot_moved)
+        elif event.robot_returns is not None:
+            self._changes.require_return(event.robot_returns)
 
     def report_if_it_fits(self, event: Event, reason: str = "", came_s: float | None = None) -> bool:
         """As `report`, but an event that does not fit is refused, with the event `event_refused`."""
