@@ -58,7 +58,7 @@ def check_contacts(report, poses, space, robots):
             break
     for k, name in enumerate(names):
         track = np.array([places[k] for _, places in poses.steps if k < len(places)])
-        gaps = space.gap_m(track)
+        gaps = space.gap_m(track[~np.isnan(track).any(axis=1)])  # one that was taken away is nowhere
         at = int(gaps.argmin())
         report.check(gaps[at] > RADIUS_M - 1e-3, f"{name} touches a wall at {track[at]}: {gaps[at]:.3f} m")
 
@@ -148,8 +148,8 @@ def check_lost(report, simulation, script, space):
 
 
 def _may_stand(kind, places):
-    """Where a robot that is down may be for all that is known."""
-    yield from places
+    """Where a robot that is down may be for all that is known; one that was taken away is nowhere."""
+    yield from () if kind == "removed" else places
     if kind in UNHEARD_M:
         for away_m in np.linspace(UNHEARD_M[kind] / 4, UNHEARD_M[kind], 4):
             for angle in np.linspace(0, 2 * np.pi, 16, endpoint=False):
