@@ -89,7 +89,8 @@ class Played:
         if event.robot_moved is not None:
             ports[event.robot_moved.robot].put(event.robot_moved.position)
         for name in filter(None, (event.robot_fails, event.robot_removed, event.robot_silent, event.robot_returns)):
-            ports[name].broken, ports[name].mute = (
+            ports[name].broken = bool(event.robot_fails or event.robot_removed)
+            ports[name].mute = event.robot_silent is not None
                 bool(event.robot_fails or event.robot_removed),
                 event.robot_silent is not None,
             )

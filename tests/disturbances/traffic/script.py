@@ -125,7 +125,14 @@ class Script:
             self.simulation.world.fail(robot, silent=False)
 
     def _comes_back(self, robot):
-        """Execution is told, now or later, where it puts the robot out, or was told that it failed."""
+        """Execution is told, now or later, where it puts the robot out, or was told that it failed.
+
+        One that was taken away is put back where that was as soon as there is room.
+        """
+        if self.down[robot] == "removed":
+            others = [at for at in self._places.values() if not np.isnan(at).any()]
+            if np.hypot(*(np.array(others).reshape(-1, 2) - self.where[robot][0]).T).min(initial=inf) < APART_M / 2:
+                return
         del self._backs[robot]
         kind = self.down.pop(robot)
         self.downs = [
@@ -134,7 +141,9 @@ class Script:
         ]
         self._tell("returns", robot)
         world = self.simulation.world
-        if kind == "held":
+        if kind == "removed":
+            self.simulation.report(Event(at_s=0, robot_returns=robot))
+        elif kind == "held":
             world.slow(robot, 1.0)
         else:
             world.recover(robot)
@@ -184,7 +193,7 @@ class Script:
         """A robot joins where there is room for it."""
         for _ in range(100):
             place = self._place(RADIUS_M + 0.05)
-            if np.hypot(*(self._now() - place).T).min() > APART_M:
+            if np.nanmin(np.hypot(*(self._now() - place).T), initial=inf) > APART_M:
                 robot = newcomer(f"j_{len(self.told)}", place, self.random.choice(self.mission.robots))
                 self._tell("joins", f"{robot.id} at {place}")
                 self.simulation.report(Event(at_s=0, robot_joins=robot))
@@ -198,9 +207,8 @@ class Script:
         for _ in range(100 if robot else 0):
             here, near = self._places[robot], self.random.random() < 0.5
             angle, far_m = self.random.uniform(-pi, pi), self.random.uniform(0.3, 2.0)
-            place = (
-                (here[0] + far_m * cos(angle), here[1] + far_m * sin(angle)) if near else self._place(RADIUS_M + 0.05)
-            )
+            aside = here[0] + far_m * cos(angle), here[1] + far_m * sin(angle)
+            place = aside if near else self._place(RADIUS_M + 0.05)
             others = [at for name, at in self._places.items() if name != robot and not np.isnan(at).any()]
             room = np.hypot(*(np.array(others) - place).T).min(initial=inf) > APART_M / 2
             if room and self.space.gap_m([place])[0] > RADIUS_M + 0.05:
