@@ -91,9 +91,6 @@ class Played:
         for name in filter(None, (event.robot_fails, event.robot_removed, event.robot_silent, event.robot_returns)):
             ports[name].broken = bool(event.robot_fails or event.robot_removed)
             ports[name].mute = event.robot_silent is not None
-                bool(event.robot_fails or event.robot_removed),
-                event.robot_silent is not None,
-            )
         self.executor.report_if_it_fits(event)
 
     @property

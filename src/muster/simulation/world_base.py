@@ -312,7 +312,8 @@ class WorldBase(SimulatedWorld, ABC):
         self._put(number, (*position, height)[:3] if len(position) == 2 else position)
 
     def _put(self, number: int, place: tuple[float, ...]) -> None:
-        self._crowd.place(number, place)
+        x, y, z = place
+        self._crowd.place(number, (x, y, z))
 
     def recover(self, robot: str) -> None:
         if robot in self._removed:

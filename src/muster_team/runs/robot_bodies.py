@@ -181,10 +181,14 @@ class RobotBodies:
             return
         if (down := event.robot_fails or event.robot_removed) is not None:
             self._fail(down)  # first, as its last reports precede the event
-        if event.robot_removed is not None:
-            self._world.remove(event.robot_removed)
+            if event.robot_removed is not None:
+                self._world.remove(down)
         if not self._log.take_event(event, self.time_s) or down is not None:
             return
+        self._carry_out(event)
+
+    def _carry_out(self, event: Event) -> None:
+        """Apply an event that leaves robots at work, or brings one."""
         if event.robot_silent is not None:
             self._set_radio(event.robot_silent, on=False)
         elif event.robot_moved is not None:
