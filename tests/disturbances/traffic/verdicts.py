@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from tests.disturbances.traffic.geometry import joined
+from tests.disturbances.traffic.geometry import FAR_M, joined
 from tests.disturbances.traffic.missions import RADIUS_M
 
 STANDS_S = 60.0
@@ -69,7 +69,7 @@ def check_doors(report, poses, space, closings):
         within = None
         for now, places in poses.steps:
             if begin < now <= end:
-                away = shapely.distance(shapely.points(places), space.doors[door])
+                away = shapely.distance(shapely.points(np.nan_to_num(places, nan=FAR_M)), space.doors[door])
                 there = set(np.flatnonzero(away < RADIUS_M - 1e-3).tolist())
                 stops = within is None or now <= begin + STOPS_S
                 report.check(stops or there <= within, f"{there} enter {door}, closed, at {now:.1f} s")
