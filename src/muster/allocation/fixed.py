@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import reduce
 
 from muster import core
@@ -38,6 +38,23 @@ def admissible_alone(problem: Problem, i: int, route: Sequence[int]) -> bool:
     routes: Routes = [[] for _ in problem.robots]
     routes[i] = list(route)
     return bool(core.Inspection(problem.core, routes).admissible)
+
+
+@dataclass(frozen=True)
+class RoutesValue:
+    """What routes come to: whether they are admissible, the weight that they complete, and their objective."""
+
+    admissible: bool
+    weight: float
+    objective: float
+
+
+def value_of(problem: Problem, routes: Routes) -> RoutesValue:
+    """Return the value of routes, which may deadlock: they are not admissible then, and have no objective."""
+    inspection = core.Inspection(problem.core, routes)
+    weight = sum(problem.tasks[j].priority for j in sorted({j for route in routes for j in route}))
+    objective = inspection.objective
+    return RoutesValue(inspection.admissible and objective is not None, weight, 0.0 if objective is None else objective)
 
 
 def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:

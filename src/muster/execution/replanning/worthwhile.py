@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from muster import core
 from muster.allocation.allocator import Routes
+from muster.allocation.fixed import value_of
 from muster.mission.task_relations import joined
 from muster.model.problem import Problem
 
@@ -20,13 +20,6 @@ NEARLY_THERE_S = 5.0
 """A robot is nearly there that is so many seconds from the task it is on the way to, or waits at it: it keeps it."""
 _BETTER = 1e-6
 """By which share of the objective routes must be better that move no task to another robot."""
-
-
-@dataclass(frozen=True)
-class _Value:
-    admissible: bool
-    weight: float
-    objective: float
 
 
 @dataclass(frozen=True)
@@ -51,7 +44,7 @@ def worthwhile(
     most
         how many tasks may change robots; None: any number.
     """
-    best, value = now, _value(problem, now)
+    best, value = now, value_of(problem, now)
     mean, on_way = _mean_ahead(problem, now, value.objective), {one.task for one in headings.values()}
     near = {
         problem.robot_index[robot]: problem.task_index[one.task]
@@ -67,7 +60,7 @@ def worthwhile(
         moved = _moved(now, tried)
         if tried == best or (most is not None and len(moved) > most) or not _keeps(problem, tried, near):
             continue
-        found = _value(problem, tried)
+        found = value_of(problem, tried)
         least = max(_BETTER * abs(value.objective), least_gain(moved - _moved(now, best)))
         better = found.weight == value.weight and found.objective < value.objective - least
         if found.admissible and (found.weight > value.weight or better):
@@ -75,18 +68,11 @@ def worthwhile(
     return best
 
 
-def _value(problem: Problem, routes: Routes) -> _Value:
-    inspection = core.Inspection(problem.core, routes)
-    weight = sum(problem.tasks[j].priority for j in sorted({j for route in routes for j in route}))
-    objective = inspection.objective
-    return _Value(inspection.admissible and objective is not None, weight, 0.0 if objective is None else objective)
-
-
 def _mean_ahead(problem: Problem, routes: Routes, objective: float) -> float:
     """What a task that lies ahead costs the objective on average."""
     begun = [list(problem.beginning(i)) for i in range(len(routes))]
     ahead = sum(map(len, routes)) - sum(map(len, begun))
-    return max(0.0, objective - _value(problem, begun).objective) / max(1, ahead)
+    return max(0.0, objective - value_of(problem, begun).objective) / max(1, ahead)
 
 
 def _exchanges(problem: Problem, now: Routes, then: Routes) -> Iterator[set[int]]:
