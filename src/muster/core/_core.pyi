@@ -658,6 +658,35 @@ class Tree:
         The shortest way found so far with its ends, (k, 3); empty if there is none.
         """
 
+class VoxelWays:
+    """Short ways through free voxels; coordinates x, y, z count in voxels."""
+
+    def __init__(self, blocked: Annotated[NDArray[numpy.bool_], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> None:
+        """`blocked` is (layers, rows, columns)."""
+
+    def free(self, point: Sequence[float]) -> bool: ...
+
+    def sees(self, a: Sequence[float], b: Sequence[float]) -> bool:
+        """Whether all voxels between two points are free."""
+
+    def part(self, point: Sequence[float]) -> int:
+        """
+        The number of the connected part that a point is in; 0 if it is not free.
+        """
+
+    def way(self, start: Sequence[float], goal: Sequence[float]) -> NDArray[numpy.float64]:
+        """A way with its ends, (k, 3); empty if there is none."""
+
+def voxels_passed(shape: Sequence[int], eye: Sequence[float], heading: float, reached: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.int64]:
+    """
+    The voxels, as indices of the flat array, whose centres are nearer than the four beams around them reached, by a voxel at least. `reached` is (rings, columns), in voxels: rings from straight down to straight up, columns anticlockwise from `heading`.
+    """
+
+def lower_clearances(clearances: Annotated[NDArray[numpy.float32], dict(shape=(None, None, None), order='C', device='cpu')], points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], reach: float) -> None:
+    """
+    Lower the distances from the centres of voxels to the nearest of points (n, 3), where that is within `reach`.
+    """
+
 def spanning_tree(legs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], root: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], joined: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], parent: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]) -> None:
     """
     Write for each of n tasks what the edge to its parent costs in the least spanning tree of a root and all tasks, and the parent, -1: the root. Edges cost legs (n, n), symmetric, and p (n,) of both ends; those of the root cost root (n,).
