@@ -846,6 +846,9 @@ class CrowdWorld:
 
     def recover(self, robot: int) -> None: ...
 
+    def place(self, robot: int, position: tuple[float, float, float]) -> None:
+        """Puts a robot elsewhere: it stands there, without an order."""
+
     def slow(self, robot: int, factor: float) -> None: ...
 
     def leave_to_traffic(self, robot: int) -> None: ...

@@ -214,9 +214,9 @@ class Simulation:
         ParameterError
             if the event names a robot or task that there is not, or one anew that there is.
         """
-        if event.robot_joins is not None:
-            self._executor.require_newcomer(event.robot_joins)
-            self._take_event(event)  # the executor asks for its port
+        if event.robot_joins is not None or event.robot_moved is not None:
+            self._executor.require_room(event)
+            self._take_event(event)  # the executor asks for its port, and where it is
             self._executor.report(event)
         else:
             self._executor.report(event)
@@ -336,8 +336,16 @@ class Simulation:
 
     def _take_event(self, event: Event) -> None:
         """What an event does to bodies; what it does to the plan is the executor's affair."""
+        try:
+            self._executor.require_room(event)
+        except ParameterError:
+            return  # the executor refuses it, too
         if event.robot_fails is not None:
             self._world.fail(event.robot_fails)
+        elif event.robot_removed is not None:
+            self._world.remove(event.robot_removed)
+        elif event.robot_moved is not None:
+            self._world.place(event.robot_moved.robot, event.robot_moved.position)
         elif event.robot_silent is not None:
             self._world.silence(event.robot_silent)
         elif event.robot_returns is not None:

@@ -111,6 +111,14 @@ class SimulatedWorld(Protocol):
         """Let a failed robot work again, telemetry included; it stands until it gets way points."""
         ...
 
+    def remove(self, robot: str) -> None:
+        """Take a robot away: it is nowhere, in nobody's way, and not heard, until it recovers where it was."""
+        ...
+
+    def place(self, robot: str, position: tuple[float, ...]) -> None:
+        """Put a robot somewhere else: it stands there until it gets way points."""
+        ...
+
     def silence(self, robot: str) -> None:
         """Freeze a robot's telemetry; the robot goes on, and still receives way points."""
         ...

@@ -17,5 +17,5 @@ def test_teams_in_narrow_places_get_through_whatever_happens(seeds):
     reports = [trial(seed) for seed in seeds]
     assert [f"seed {report.seed}: {failure}" for report in reports for failure in report.failures] == []
     counts = sum((report.counts for report in reports), Counter())
-    for kind in (*STOPS, "new task", "cancel", "joins", "returns", "closes", "opens"):
+    for kind in (*STOPS, "removed", "moved", "new task", "cancel", "joins", "returns", "closes", "opens"):
         assert counts[kind] > 0, kind

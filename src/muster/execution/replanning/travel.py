@@ -53,6 +53,10 @@ class Travel(Protocol):
         """From now on these doors are closed, and the others open; what is measured follows where it knows doors."""
         ...
 
+    def stands(self, robot: Robot, at: Place) -> bool:
+        """Whether a robot may stand at a place, as far as walls and closed areas go."""
+        ...
+
     def way_out(self, robot: Robot, at: Place, goal: Place | None) -> Place | None:
         """Where a robot is to go first that stands in a door: out on its way to a goal; None where it stands free."""
         ...
@@ -110,6 +114,9 @@ def way_of(mission: Mission, robot_paths: RobotPaths | None = None) -> Way:
 class Straight:
     """Travel without obstacles."""
 
+    def stands(self, robot: Robot, at: Place) -> bool:
+        return True
+
     def knows(self, name: str) -> bool:
         return True
 
@@ -129,6 +136,9 @@ class OverMap:
 
     robot_paths: RobotPaths
     mission: Mission | None = None
+
+    def stands(self, robot: Robot, at: Place) -> bool:
+        return self.robot_paths.stands(body_of(robot), at)
 
     def knows(self, name: str) -> bool:
         return True
@@ -187,6 +197,9 @@ class ByTable:
     """Travel tables, which know the places of robots and tasks alone: a robot is at the place it goes to next."""
 
     tables: Mapping[str, TravelTable]
+
+    def stands(self, robot: Robot, at: Place) -> bool:
+        return True
 
     def knows(self, name: str) -> bool:
         return all(name in table.places for table in self.tables.values())

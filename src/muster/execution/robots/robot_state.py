@@ -18,7 +18,7 @@ from muster.mission.model import Robot
 from muster.model.robot_limits import NO_LIMITS, RobotLimits
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
-from muster.state.robot_events import RobotFails
+from muster.state.robot_events import RobotFails, RobotRemoved
 from muster.state.robots import KnownRobot
 
 _ROUNDING_S = 1e-6
@@ -201,7 +201,7 @@ class RobotState:
             self.energy.recall(*left)
         self.at_home = self.at_home and not self.done
         said = self.port.telemetry()
-        if self.out and self.out != RobotFails.kind and said is not None:
+        if self.out and self.out not in (RobotFails.kind, RobotRemoved.kind) and said is not None:
             self.out_at = said.position
 
     def hear(self, now: float) -> Telemetry | None:
