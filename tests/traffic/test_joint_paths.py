@@ -123,7 +123,7 @@ def test_time_limit_is_of_the_clock_given():
 
     graph, starts, goals = crowd()
     found = joint_paths(graph, starts, goals, time_limit=5.0, clock=Late())
-    assert (found.proven, found.reason.split(",")[0]) == (False, "not found with 0 expansions")
+    assert (found.proven, found.reason.split(":")[0]) == (False, "not found with 0 expansions")
 
 
 def test_costs_as_the_benchmarks_count():
