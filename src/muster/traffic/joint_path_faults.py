@@ -55,12 +55,11 @@ def graph_faults(
         For each robot its start and its goal.
     """
     joined = set(edges)
-    return _faults(
-        paths,
-        ends,
-        lambda vertex: 0 <= vertex < size,
-        lambda before, vertex: before == vertex or (before, vertex) in joined,
-    )
+
+    def is_move(before: int, vertex: int) -> bool:
+        return before == vertex or (before, vertex) in joined
+
+    return _faults(paths, ends, lambda vertex: 0 <= vertex < size, is_move)
 
 
 def _faults(

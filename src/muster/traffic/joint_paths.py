@@ -116,12 +116,11 @@ def joint_paths(
     guidance = core.TrafficGuidance(graph, list(starts), list(goals), seed)
     while not guidance.finished:
         if not (more := effort.preparation()):
-            return NoJointPaths(
-                False, f"not found with {effort.done} expansions: the time was over before all robots had a way"
-            )
+            return NoJointPaths(False, "not found with 0 expansions: the time was over before all robots had a way")
         guidance.advance(more)
     if not guidance.connected:
         return NoJointPaths(True, "a goal cannot be reached from its start")
+    effort.begin_phase()
     search = core.Lacam(guidance, samples=params.samples, seed=seed, anytime=params.anytime)
     while search.state == "searching" or (params.anytime and search.state == "solved"):
         if search.nodes * len(goals) > _MOST_ENTRIES or not (more := effort.next()):
@@ -133,6 +132,7 @@ def joint_paths(
         return NoJointPaths(False, f"not found with {effort.done} expansions, {search.nodes} configurations seen")
     steps = search.solution()
     if params.refine:
+        effort.begin_phase()
         refinement = core.JointRefinement(guidance, steps, seed)
         while refinement.cost > guidance.least_sum and (more := effort.next()):
             refinement.advance(more)
@@ -146,8 +146,12 @@ class _Effort:
     def __init__(self, clock: Clock, time_limit: float | None, expansions: int | None) -> None:
         self._clock, self._time_limit, self._expansions = clock, time_limit, expansions
         self._begin = self._last = clock.now()
-        self._size = 1 if time_limit is not None else _AT_ONCE
         self.done = 0
+        self.begin_phase()
+
+    def begin_phase(self) -> None:
+        """Begin with small calls: nothing is known of how long those of another kind take."""
+        self._size = 1 if self._time_limit is not None else _AT_ONCE
 
     def next(self) -> int:
         """Return how many expansions to do now; 0 at the end."""
@@ -162,7 +166,7 @@ class _Effort:
             return self._size
         now = self._clock.now()
         share, self._last = (now - self._last) / max(self._time_limit, 1e-9), now
-        self._size = max(1, self._size // 2) if share > _SHARE else min(2 * self._size, _AT_ONCE)
+        self._size = max(1, int(self._size * _SHARE / share)) if share > _SHARE else min(2 * self._size, _AT_ONCE)
         return 0 if now - self._begin >= self._time_limit else self._size
 
 

@@ -78,7 +78,7 @@ def read_scenario(path: Path) -> list[Ends]:
 
 
 def require_fitting(path: Path, ends: Sequence[Ends], blocked: Bools) -> None:
-    """Raise `InputError` where a robot of a scenario starts, or is to go, beside the free cells of a map, or where another is.
+    """Raise `InputError` where a robot of a scenario has no free cell of a map, or one that another has.
 
     Parameters
     ----------

@@ -80,12 +80,10 @@ _FILE = click.Path(path_type=File)
 @click.option(
     "--joint",
     is_flag=True,
-    help="Paths of all robots step by step: of --scenario on a .map, or of --together on the roadmap.",
+    help="Paths of all robots, step by step: of --scenario, or of --together on the roadmap.",
 )
 @click.option("--scenario", type=_FILE, metavar="FILE", help="Of --joint: starts and goals on a MovingAI map (.scen).")
-@click.option(
-    "--agents", type=click.IntRange(min=1), metavar="N", help="Of --joint: the first N robots.  [default: all]"
-)
+@click.option("--agents", type=click.IntRange(min=1), metavar="N", help="Of --joint: the first N.  [default: all]")
 @click.option("--time-limit", type=Finite(1e-3, 1e6), metavar="S", help="Of --joint, seconds.  [default: 10]")
 @click.option("--expansions", type=click.IntRange(min=1), metavar="N", help="Of --joint: end after N expansions.")
 @click.option("-o", "--output", type=_FILE, metavar="FILE", help="Of --joint: write the paths (.json, else text).")
@@ -147,9 +145,7 @@ def command(
         else:
             instance = path_joint.of_mission(mission, together, agents, verbose=verbose)
         return path_joint.run(instance, path_joint.Limits(time_limit, expansions, seed), form, output, plot)
-    for option, value in of_joint.items():
-        if value is not None:
-            raise ParameterError(f"{option}: {value}; expected --joint beside it")
+    _require_none(of_joint, "--joint")
     loaded = mission.load(verbose=verbose)
     if together:
         from muster.cli.verbs.path_together import run
@@ -181,6 +177,12 @@ def command(
     else:
         _print(found, loaded, body, planner, driven)
     return DONE
+
+
+def _require_none(options: dict[str, Any], beside: str) -> None:
+    for option, value in options.items():
+        if value is not None:
+            raise ParameterError(f"{option}: {value}; expected {beside} beside it")
 
 
 def _world(mission: Mission) -> World | None:

@@ -135,7 +135,7 @@ def of_map(file: File, scenario: File | None, agents: int | None) -> Instance:
 
 
 def of_mission(mission: MissionFile, goals: Sequence[str], agents: int | None, *, verbose: bool) -> Instance:
-    """Return robots of a mission on its roadmap, from the points nearest to their places to those nearest to their goals.
+    """Return robots of a mission on its roadmap: each from the point nearest to its place to that nearest to its goal.
 
     Raises
     ------
@@ -171,8 +171,8 @@ def _nearest(points: Floats, side: str, places: dict[str, Any]) -> list[int]:
         if point in taken:
             x, y = points[point]
             raise ParameterError(
-                f"--joint: the {side} of {name} and that of {taken[point]} are nearest to the same point of the roadmap, "
-                f"({x:g}, {y:g}); expected a point of its own for each"
+                f"--joint: the {side} of {name} and that of {taken[point]} are nearest to the same point, "
+                f"({x:g}, {y:g}); expected a point of the roadmap for each"
             )
         taken[point] = name
     return list(taken)
@@ -203,11 +203,13 @@ def _figures(instance: Instance, found: JointPaths, cpu_s: float, seed: int) -> 
 
 def _print(instance: Instance, figures: dict[str, Any]) -> None:
     from muster.cli.tables.table import print_table
+    from muster.mission.texts.counting import counted
 
     shown = ("steps", "sum_of_costs", "lower_bound", "makespan", "sum_of_loss", "expansions")
     rows = [(name.replace("_", " "), f"{figures[name]:,}") for name in shown]
     print_table(("paths", "number"), [*rows, ("CPU time [s]", f"{figures['cpu_s']:.3f}")], right=("number",))
-    click.echo(f"{instance.name}: {figures['agents']:,} robots, seed {figures['seed']}; judged, no conflict")
+    robots = counted(figures["agents"], "robot")
+    click.echo(f"{instance.name}: {robots}, seed {figures['seed']}; judged, no conflict")
 
 
 def _write(file: File, instance: Instance, found: JointPaths, figures: dict[str, Any]) -> None:

@@ -77,9 +77,10 @@ void bind_lacam(nb::module_& m) {
       .def_prop_ro("edges", &DirectedGraph::edges)
       .def("costs_to", &DirectedGraph::costs_to, "goal"_a, Unlocked(),
            "What it costs to come to a vertex from each; infinite where there is no way.");
-  nb::class_<TrafficGuidance>(m, "TrafficGuidance", "Ways of robots to their goals that avoid those who come the other way.")
-      .def(nb::init<std::shared_ptr<const DirectedGraph>, std::vector<int>, std::vector<int>, std::uint64_t>(), "graph"_a,
-           "starts"_a, "goals"_a, "seed"_a,
+  nb::class_<TrafficGuidance>(m, "TrafficGuidance",
+                              "Ways of robots to their goals that avoid those who come the other way.")
+      .def(nb::init<std::shared_ptr<const DirectedGraph>, std::vector<int>, std::vector<int>, std::uint64_t>(),
+           "graph"_a, "starts"_a, "goals"_a, "seed"_a,
            "Raises ValueError where starts or goals are no vertices, or not of the same number.")
       .def("advance", &TrafficGuidance::advance, "steps"_a, Unlocked(), "Two steps a robot.")
       .def_prop_ro("finished", &TrafficGuidance::finished)
@@ -108,9 +109,8 @@ void bind_lacam(nb::module_& m) {
       .def(
           "__init__",
           [](JointRefinement* self, const TrafficGuidance& guidance,
-             const nb::ndarray<const std::int64_t, nb::ndim<2>, nb::c_contig>& steps, std::uint64_t seed) {
-            new (self) JointRefinement(guidance.distances(), configurations_of(steps), seed);
-          },
+             const nb::ndarray<const std::int64_t, nb::ndim<2>, nb::c_contig>& steps,
+             std::uint64_t seed) { new (self) JointRefinement(guidance.distances(), configurations_of(steps), seed); },
           "guidance"_a, "steps"_a, "seed"_a, "Raises ValueError where `steps` are no paths to the goals.")
       .def("advance", &JointRefinement::advance, "neighbourhoods"_a, Unlocked())
       .def_prop_ro("cost", &JointRefinement::cost, "Steps until each robot rests at its goal for good, summed up.")

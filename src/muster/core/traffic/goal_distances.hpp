@@ -11,8 +11,8 @@
 
 namespace muster {
 
-// Dijkstra's algorithm backwards from each goal, which goes on from where it stopped whenever a vertex is asked for that
-// it has not settled.
+// Dijkstra's algorithm backwards from each goal, which goes on from where it stopped whenever a vertex is asked for
+// that it has not settled.
 class GoalDistances {
  public:
   // `costs` are those of the edges, 1 each where it is empty: then distances are numbers of steps. Throws

@@ -30,7 +30,8 @@ JointSteps::JointSteps(const TrafficGuidance& guidance, int samples, std::uint64
 JointSteps::Memo JointSteps::memo() const {
   Memo memo;
   for (int i = 0; i < pibt_.robots(); ++i) {
-    memo.priorities.push_back(static_cast<double>(distances_->to_goal(i, starts_[i])) / (distances_->graph().size() + 1));
+    memo.priorities.push_back(static_cast<double>(distances_->to_goal(i, starts_[i])) /
+                              (distances_->graph().size() + 1));
   }
   return memo;
 }
@@ -63,8 +64,8 @@ void JointSteps::moves(const Configuration& places, int robot, std::vector<int>&
   found.push_back(places[robot]);
 }
 
-bool JointSteps::next(const Configuration& from, const Memo& memo, std::span<const Constraint> said,
-                      Configuration& to, Memo& grown) {
+bool JointSteps::next(const Configuration& from, const Memo& memo, std::span<const Constraint> said, Configuration& to,
+                      Memo& grown) {
   order(memo, order_);
   const bool guided = ++calls_ <= guided_calls_;
   for (int i = 0; i < pibt_.robots(); ++i) {

@@ -12,8 +12,8 @@
 namespace muster {
 
 // No two robots are at one vertex, or change places. At first robots take ways that avoid those who come the other way;
-// after that the shortest, since the rules of swapping are made for these. The cost is the number of steps that robots do not rest at their
-// goals (sum of loss).
+// after that the shortest, since the rules of swapping are made for these. The cost is the number of steps that robots
+// do not rest at their goals (sum of loss).
 class JointSteps {
  public:
   struct Memo {
@@ -39,7 +39,7 @@ class JointSteps {
  private:
   std::shared_ptr<GoalDistances> distances_, guided_;
   Configuration starts_;
-  std::vector<int> guided_until_;  // by robot: the step from which it takes the shortest way
+  std::vector<int> guided_until_;     // by robot: the step from which it takes the shortest way
   int calls_ = 0, guided_calls_ = 0;  // how many steps were made, and how many of them are guided at most
   int samples_;
   Pibt pibt_;

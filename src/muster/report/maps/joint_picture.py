@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -38,6 +38,7 @@ def plot_joint_paths(
     MissingExtraError
         If matplotlib is not installed.
     """
+    ax: Any
     low, high = limits(places, 0.05, on_ground=True)
     ax = map_axes(low, high, _LONG_SIDE_IN)
     both = places[np.asarray(edges, dtype=np.int64).reshape(-1, 2)]
@@ -54,4 +55,4 @@ def plot_joint_paths(
         entries.append((marks, what))
     add_legend(ax, entries)
     add_title(ax, name, [facts], "")
-    return ax
+    return ax  # type: ignore[no-any-return]
