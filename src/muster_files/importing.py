@@ -11,7 +11,7 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.yaml_writer import YAML_SUFFIXES
 from muster.planning.loading import load, load_noted
-from muster.planning.mission_readers import converted_suffixes
+from muster.planning.mission_readers import converted_suffixes, reader_of
 
 if TYPE_CHECKING:
     from muster_files.sites.site_files import SiteMission
@@ -96,7 +96,12 @@ def read_site(
         flat=flat,
         survey={"height_m": height_m, "fov_deg": fov_deg, "width_m": width_m},
     )
-    base = load_noted(missions[0]) if missions else None
+    base = None
+    if missions:
+        reader = reader_of(Path(missions[0]))
+        takes_origin = reader is not None and "origin" in reader.flags
+        base = load_noted(missions[0], origin=options.origin if takes_origin else None)
+        options = replace(options, origin=None if takes_origin else options.origin)
     found = read(
         site,
         options,

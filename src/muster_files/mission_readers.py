@@ -5,7 +5,7 @@ They load when used.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from muster.mission.texts.text_files import first_lines
@@ -75,10 +75,10 @@ def _are_plans(path: Path) -> bool:
     return path.suffix.lower() == ".plan" or path.is_dir()
 
 
-def _read_plans(path: Path) -> Noted:
+def _read_plans(path: Path, origin: Sequence[float] | None = None) -> Noted:
     from muster_files.qgc.reader import read_flight_plans
 
-    return read_flight_plans(path)
+    return read_flight_plans(path, origin)
 
 
 def _are_way_points(path: Path) -> bool:
@@ -88,10 +88,10 @@ def _are_way_points(path: Path) -> bool:
     return suffix in _WAY_POINTS or first_lines(path).startswith(WAY_POINTS_HEAD)
 
 
-def _read_way_points(path: Path) -> Noted:
+def _read_way_points(path: Path, origin: Sequence[float] | None = None) -> Noted:
     from muster_files.qgc.wpl_reader import read_wpl
 
-    return read_wpl(path)
+    return read_wpl(path, origin)
 
 
 TSPLIB = MissionReader(
@@ -103,5 +103,5 @@ TSPLIB = MissionReader(
 )
 VEHICLES = MissionReader(takes=_has_vehicles, read=_read_vehicles, flags=("salesmen",), suffixes=(".vrp", ".txt"))
 SITE = MissionReader(takes=_is_site, read=_read_site, flags=("robots", "suitability", "columns"), refusal=unknown_file)
-PLANS = MissionReader(takes=_are_plans, read=_read_plans, suffixes=(".plan",))
-WAY_POINTS = MissionReader(takes=_are_way_points, read=_read_way_points, suffixes=_WAY_POINTS)
+PLANS = MissionReader(takes=_are_plans, read=_read_plans, flags=("origin",), suffixes=(".plan",))
+WAY_POINTS = MissionReader(takes=_are_way_points, read=_read_way_points, flags=("origin",), suffixes=_WAY_POINTS)

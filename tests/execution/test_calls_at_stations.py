@@ -201,6 +201,16 @@ def test_a_robot_that_is_served_stays_for_all_that_a_new_plan_asks(more):
     assert all(begin >= end for (begin, _), (end, _) in zip(begins[1:], ends, strict=False))
 
 
+def test_no_station_that_was_in_reach_once_is_called_at_for_a_task_that_came_later():
+    given = mission([robot(battery=battery(20, 0.5))], [task("a", 8)], [charger(x=1)])
+    given = replace(given, events=(Event(at_s=15, new_task=task("b", 12)),))
+    simulation = carried_out(given, r="a")
+    assert not happened(simulation, "goes_to_station", "robot_fails")
+    assert simulation.result().tasks_done == ("a",)
+    (lost,) = (event for event in simulation.events if event.kind == "lost")
+    assert lost.data["reason"].startswith("battery: ")
+
+
 def test_an_empty_robot_counts_as_failed_where_it_is():
     given = mission([robot("r", battery=battery(20)), robot("s", -9)], [task("a", 30)])
     done = carried_out(given, ignore="battery", r="a", s="")

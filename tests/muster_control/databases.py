@@ -18,6 +18,8 @@ from tests.muster_control.runs.process import children
 __all__ = ["database_url", "postgresql", "postgresql_url"]
 
 _numbers = itertools.count(1)
+_PATIENCE_S = 900
+"""For so long a server may start or stop: a busy machine takes longer than the minute that `pg_ctl` waits."""
 _QUICK = "-c fsync=off -c synchronous_commit=off -c full_page_writes=off -c shared_buffers=16MB -c max_connections=40"
 
 
@@ -47,14 +49,19 @@ class PostgreSQL:
             command, cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
         if done.returncode != 0:
-            raise RuntimeError(f"{program} ended with {done.returncode}")
+            log = self._log.read_text() if self._log.exists() else "no log"
+            raise RuntimeError(f"{program} ended with {done.returncode}: {log[-2000:]}")
+
+    @property
+    def _log(self):
+        return self.folder / "log"
 
     def start(self):
         options = f"-c listen_addresses='' -c unix_socket_directories={self.folder} {_QUICK}"
-        self.call("pg_ctl", "-D", self._data, "-w", "-o", options, "-l", self.folder / "log", "start")
+        self.call("pg_ctl", "-D", self._data, "-w", "-t", _PATIENCE_S, "-o", options, "-l", self._log, "start")
 
     def stop(self):
-        self.call("pg_ctl", "-D", self._data, "-w", "-m", "fast", "stop")
+        self.call("pg_ctl", "-D", self._data, "-w", "-t", _PATIENCE_S, "-m", "fast", "stop")
 
     def freeze(self):
         """Let all processes stand: nothing is answered, and no connection breaks."""

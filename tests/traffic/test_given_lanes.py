@@ -8,9 +8,10 @@ from muster.mission.errors import MissionError
 from muster.mission.lanes import Lane, Lanes
 from muster.motion.free_space import PolygonSpace
 from muster.motion.paths import PathFinder
-from muster.traffic.journeys.roadmap_network import with_places
+from muster.traffic.journeys.roadmap_network import Standing, with_places
 from muster.traffic.roadmaps.given_lanes import closed_lanes
 from muster.traffic.roadmaps.roadmap import Roadmap
+from muster.traffic.roadmaps.robot_spaces import RobotSpaces
 
 RADIUS = 0.3
 NODES = {"a": (0, 0), "b": (5, 0), "c": (5, 3)}
@@ -18,6 +19,10 @@ NODES = {"a": (0, 0), "b": (5, 0), "c": (5, 3)}
 
 def lanes(*edges):
     return Lanes(nodes=NODES, edges=tuple(Lane(**edge) for edge in edges))
+
+
+def placed(graph, *places):
+    return with_places(Roadmap.of_lanes(graph, RADIUS), RobotSpaces(), [Standing(place, 0) for place in places])
 
 
 def test_a_lane_leads_one_way_or_both():
@@ -186,7 +191,7 @@ def test_who_stands_on_a_lane_keeps_its_speed():
         {"start": "a", "end": "b", "capacity": 1, "speed_mps": 0.5, "both_ways": True},
         {"start": "b", "end": "c", "capacity": 1, "both_ways": True},
     )
-    roadmap = with_places(Roadmap.of_lanes(graph, RADIUS), lambda piece: True, [(2.0, 0.03), (2.0, 0.5)])
+    roadmap = placed(graph, (2.0, 0.03), (2.0, 0.5))
     speeds = {
         (tuple(roadmap.points[u]), tuple(roadmap.points[v])): speed
         for (u, v), speed in zip(roadmap.edges.tolist(), roadmap.speed_mps.tolist(), strict=True)
@@ -198,7 +203,7 @@ def test_who_stands_on_a_lane_keeps_its_speed():
 def test_who_stands_on_a_lane_drives_on_along_it():
     """It is joined to no other lane across ground that has none, and one-way not to what is behind it."""
     graph = lanes({"start": "a", "end": "b", "capacity": 1}, {"start": "b", "end": "c", "capacity": 1})
-    roadmap = with_places(Roadmap.of_lanes(graph, RADIUS), lambda piece: True, [(2.0, 0.03), (3.0, 0.0), (4.9, 0.0)])
+    roadmap = placed(graph, (2.0, 0.03), (3.0, 0.0), (4.9, 0.0))
     a, first, second, b, c = (0.0, 0.0), (2.0, 0.03), (3.0, 0.0), (5.0, 0.0), (5.0, 3.0)
     on_lanes = {way for way in ways(roadmap) if (4.9, 0.0) not in way}
     assert on_lanes == {(a, b), (b, c), (a, first), (first, b), (a, second), (second, b), (first, second)}

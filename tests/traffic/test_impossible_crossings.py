@@ -50,7 +50,8 @@ def test_the_joint_positions_are_those_of_a_plain_search(shape, other_radius):
     roadmap = roadmap_of(shape, [(0.5, 0.45), (5.5, 0.45)])
     gap = RADIUS + other_radius + roadmap.margin_m
     one, other = (int(p) for p in roadmap.places)
-    joint = JointPositions.of(roadmap, np.arange(len(roadmap.points)), gap)
+    everywhere = np.arange(len(roadmap.points))
+    joint = JointPositions.of(roadmap, everywhere, everywhere, gap)
     found = {(int(a), int(b)) for a, b in np.argwhere(joint.reached(one, other))}
     assert found == positions_reached(roadmap, one, other, gap)
 

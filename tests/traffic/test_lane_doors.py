@@ -5,7 +5,6 @@ import pytest
 
 from muster.mission.lanes import Lane, Lanes
 from muster.mission.model import Mission, Robot, Task
-from muster.motion.map_world import body_of
 from muster.traffic.roadmaps.doors import RoadmapDoors
 
 A, B, AMID, FARTHER, BESIDE, AWAY = (0, 0), (8, 0), (3, 0), (5, 0.04), (3, 0.2), (3, 2)
@@ -16,7 +15,7 @@ def doors():
     robot = Robot(id="r", position=(0.0, 0.0), radius_m=0.3)
     lanes = Lanes(nodes={"a": A, "b": B}, edges=(Lane(start="a", end="b", id="ab", both_ways=True),))
     mission = Mission(robots=(robot,), tasks=(Task(id="t", position=(8.0, 0.0)),), lanes=lanes)
-    return RoadmapDoors.of(mission, body_of(robot), None)
+    return RoadmapDoors.of(mission, "ground", None)
 
 
 @pytest.mark.parametrize(
@@ -39,5 +38,5 @@ def doors():
 )
 def test_a_closed_lane_is_left_but_not_entered(doors, begin, end, is_open):
     piece = np.array([[begin, end]], dtype=np.float64)
-    assert doors.open_ways(piece, {"ab"}).tolist() == [is_open]
-    assert doors.open_ways(piece, ()).tolist() == [True]
+    assert doors.open_ways(piece, {"ab"}, 0.3).tolist() == [is_open]
+    assert doors.open_ways(piece, (), 0.3).tolist() == [True]

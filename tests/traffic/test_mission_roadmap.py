@@ -17,19 +17,23 @@ TASKS = (
 HALL = Map(boundary=((0, 0), (10, 0), (10, 10), (0, 10)))
 
 
-def test_robots_that_drive_share_it_for_the_widest_of_them():
+def test_robots_that_drive_share_it_a_layer_for_each_size():
     made = MissionRoadmap.of(Mission(robots=(ROVER, CART, DRONE), tasks=TASKS, map=HALL))
     assert [robot.id for robot in made.robots] == ["rover", "cart"]
-    assert made.roadmap.radius_m == 0.5
-    assert set(made.point_of) == {(1, 1), (9, 1), (2, 3), (8, 8), (6, 2), (4, 4)}
-    for place, point in made.point_of.items():
-        assert tuple(made.roadmap.points[point]) == pytest.approx(place)
-    assert made.points([(8, 8), (1, 1, 0)]) == [made.point_of[8, 8], made.point_of[1, 1]]
+    assert made.roadmap.radii_m.tolist() == [0.3, 0.5]
+    tasks = {(8, 8), (6, 2), (4, 4)}
+    assert [set(points) for points in made.point_of] == [{(1, 1), (9, 1), *tasks}, {(2, 3), *tasks}]
+    for layer, points in enumerate(made.point_of):
+        for place, point in points.items():
+            assert tuple(made.roadmap.points[point]) == pytest.approx(place)
+            assert made.roadmap.layer[point] == layer
+    assert made.points([(8, 8), (1, 1, 0)], ROVER) == [made.point_of[0][8, 8], made.point_of[0][1, 1]]
+    assert made.points([(8, 8)], CART) == [made.point_of[1][8, 8]]
 
 
 def test_without_a_map_it_covers_the_open_area_around_the_places():
     made = MissionRoadmap.of(Mission(robots=(ROVER,), tasks=TASKS))
-    assert min(made.point_of.values()) >= 0
+    assert min(made.point_of[0].values()) >= 0
     assert (made.roadmap.points.min(axis=0) < (1, 1)).all()
     assert (made.roadmap.points.max(axis=0) > (9, 8)).all()
 
@@ -42,8 +46,8 @@ def test_given_lanes_replace_the_map_as_their_source():
     )
     made = MissionRoadmap.of(Mission(robots=(ROVER,), tasks=(), map=HALL, lanes=lanes))
     assert made.roadmap.edges.tolist() == [[0, 1], [1, 0]]
-    assert made.point_of == {(1, 1): 0, (9, 1): 1}
-    assert [(lane.number, lane.reason) for lane in made.closed] == [(1, "too near to an obstacle for radius 0.3 m")]
+    assert made.point_of == ({(1, 1): 0, (9, 1): 1},)
+    assert [(lane.number, lane.reason) for lane in made.closed[0]] == [(1, "too near to an obstacle for radius 0.3 m")]
 
 
 def test_robots_without_a_radius_share_any_lane():

@@ -29,7 +29,7 @@ def traveller(name, start, end):
 
 
 def told(roadmap, *travellers):
-    roads = RoadmapPlan(roadmap, lambda points: True)
+    roads = RoadmapPlan(roadmap)
     journeys = roads.journeys(travellers, ways=8)
     return Forecast((), tuple(journeys.together), tuple(journeys.alone))
 

@@ -39,8 +39,9 @@ class Aisles:
         shared = MissionRoadmap.of(self.mission)
         self.roadmap, planner = shared.roadmap, MovePlanner(shared.roadmap)
         self.search = SafeIntervals(planner.shared, self.roadmap.holding.tolist(), self.roadmap.margin_m)
-        self.starts = shared.points([robot.position for robot in self.mission.robots])
-        places = shared.points([task.position for task in self.mission.tasks])
+        one = self.mission.robots[0]
+        self.starts = shared.points([robot.position for robot in self.mission.robots], one)
+        places = shared.points([task.position for task in self.mission.tasks], one)
         self.stops = [[places[(k + j * robots) % len(places)] for j in range(stops)] for k in range(robots)]
 
     def travellers(self) -> list[Traveller]:

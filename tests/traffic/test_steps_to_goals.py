@@ -16,7 +16,7 @@ LANE = Roadmap.of(
 
 def test_moves_after_a_goal_lead_on_from_it():
     """One works half way along a lane for one, and the other goes to its end past that place."""
-    plan = RoadmapPlan(LANE, lambda piece: True)
+    plan = RoadmapPlan(LANE)
     first = Traveller(
         Robot(id="a", position=(2.0, 0.4), radius_m=0.3), (2.0, 0.4), (Stop((4.0, 0.4), 2.0),), stays=False
     )

@@ -21,6 +21,7 @@ void bind_grid(nanobind::module_& m);
 void bind_ways(nanobind::module_& m);
 void bind_air(nanobind::module_& m);
 void bind_tree(nanobind::module_& m);
+void bind_voxels(nanobind::module_& m);
 void bind_spanning_tree(nanobind::module_& m);
 void bind_avoidance(nanobind::module_& m);
 void bind_crowd_world(nanobind::module_& m);

@@ -172,7 +172,9 @@ class Supervisor:
         """Where there is no way round it a robot ends here or gives up its task; traffic leads those that it steers."""
         if self._goes_round(state, broken, now):
             return
-        if state.activity is Activity.RETURNING:
+        if state.steered and self.leader.reaches(state.robot.id, [state.next_stop])[0]:
+            self._give_up(state, f"jam: held up by {broken.robot.id}, out", now)
+        elif state.activity is Activity.RETURNING:
             self.dispatch.end_here(state, now)
         elif state.activity is Activity.TO_STATION:
             self.dispatch.leave_station(state, f"unreachable: {broken.robot.id} stands there, out", now)

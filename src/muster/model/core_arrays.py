@@ -35,6 +35,7 @@ def core_arrays(problem: Question, profiles: Sequence[LegTimes]) -> dict[str, An
         "energy_at_start": model.energy_at_start if model.parts.energy else _NONE,
         "stations": [_station(station) for station in model.stations],
         "calls": _calls(model, len(model.stations)),
+        "over": np.isin(np.arange(model.tasks), list(model.parts.over)) if model.parts.over else _NONE.astype(np.bool_),
         **_profiles(profiles),
         "makespan_includes_return": problem.mission.rules.makespan_includes_return,
     }

@@ -35,6 +35,8 @@ class Travelled(Question, Protocol):
 
     def work_usage(self, i: int) -> Floats: ...
 
+    def beginning(self, i: int) -> tuple[int, ...]: ...
+
 
 def energy_reaches(problem: Travelled) -> Bools:
     """Return (m, n) whether the energy of a robot may last for a task, with the other task of its transport."""
@@ -46,7 +48,7 @@ def energy_reaches(problem: Travelled) -> Bools:
     delivery = {k: j for j, k in enumerate(pickup) if k >= 0}
     for i in problem.model.parts.energy:
         reach = _Reach(problem, i)
-        for j in range(len(problem.tasks)):
+        for j in (j for j in range(len(problem.tasks)) if j not in problem.model.parts.over):
             first, then = (pickup[j], j) if pickup[j] >= 0 else (j, delivery.get(j))
             reaches[i, j] = reach.allows(first, then)
     return reaches
@@ -76,7 +78,8 @@ class _Reach:
         self._filling = [
             k + 2 for k, s in enumerate(problem.stations) if s.gives_energy and problem.model.may_call(i, k)
         ]
-        at_start = float(problem.model.energy_at_start[i])
+        done = [j for j in problem.beginning(i) if j in problem.model.parts.over]  # before it can call at any station
+        at_start = float(problem.model.energy_at_start[i] - self._work[done].sum())
         self._levels = self._with_stations({0: at_start}, self._between[0], at_start)
         self._ends = self._to_end() if problem.robots[i].place_at_end(problem.mission.rules) is not None else None
 

@@ -61,19 +61,16 @@ def refilled_to(problem: Problem, i: int, stops: Sequence[RouteStop], usages: Se
     Parameters
     ----------
     usages : sequence of float
-        What the robot uses from one stop to the end of the next. What is to be added before the past is added after it.
+        What the robot uses from one stop to the end of the next.
     """
     energy = Energy.of(problem.robots[i])
     if energy is None:
         return [None] * len(stops)
-    past = {problem.tasks[j].id for j in problem.beginning(i)}
     filling = {station.id for station in problem.stations if station.gives_energy}
     level = problem.levels[i] if problem.levels else energy.at_start
     shares: list[float | None] = []
     for stop, usage in zip(stops, usages, strict=True):
         level -= usage
-        if stop.name in past:
-            shares = [before and level / energy.capacity for before in shares]
         if stop.charged is not None or stop.name in filling:
             level = min(energy.capacity, level + (math.inf if stop.charged is None else stop.charged))
         shares.append(None if stop.charged is None else level / energy.capacity)

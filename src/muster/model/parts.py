@@ -121,7 +121,7 @@ class Parts:
     robots: int
     tasks: int
     begun: Mapping[int, Begun] = field(default_factory=dict)  # by robot
-    over: Collection[int] = ()  # tasks that stand for what was done: when and by when binds them no more
+    over: Collection[int] = ()  # tasks that stand for what was done: no times bind them, no call comes before them
     openings: dict[int, Openings] = field(default_factory=dict)
     ends_by: dict[int, float] = field(default_factory=dict)
     over_by: dict[int, float] = field(default_factory=dict)

@@ -10,6 +10,7 @@ import numpy as np
 
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
+from muster.mission.values.arrays import Floats
 from muster.model.waiting import Waiting
 from muster.traffic.journeys.forecast import Forecast, Forecaster
 from muster.traffic.journeys.passage_delays import PassageDelays
@@ -78,11 +79,21 @@ class SharedPassages:
         """The problem with the delays that its robots can expect."""
         if not delays:
             return problem
-        at = [self.made.point_of.get((x, y), -1) for x, y, _ in problem.all_places.tolist()]
-        entries, exits = at[: len(at) // 2], at[len(at) // 2 :]
         robots = np.array([drives(robot) for robot in problem.robots], dtype=np.bool_)
-        waiting = Waiting(delays.between(exits, entries), robots)
+        layers = [self.made.roadmap.layer_for(robot.radius_m) for robot in filter(drives, problem.robots)]
+        sizes, counts = np.unique(layers, return_counts=True)
+        by_size = [self._delays(problem, delays, int(layer)) for layer in sizes]
+        # The mean over robots; of one size exactly its own, so that equal costs stay equal.
+        seconds = by_size[0] if len(sizes) == 1 else np.average(by_size, axis=0, weights=counts)
+        waiting = Waiting(seconds, robots)
         return replace(_counting_ways_home(problem), known=problem.measured, waiting=waiting).ready()
+
+    def _delays(self, problem: Problem, delays: PassageDelays, layer: int) -> Floats:
+        """Seconds from exits to entries of tasks, on a layer; 0 where robots of that size have nothing to do."""
+        points = self.made.point_of[layer]
+        at = [points.get((x, y), -1) for x, y, _ in problem.all_places.tolist()]
+        entries, exits = at[: len(at) // 2], at[len(at) // 2 :]
+        return delays.between(exits, entries)
 
 
 def _counting_ways_home(problem: Problem) -> Problem:

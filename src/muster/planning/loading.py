@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -65,10 +65,22 @@ def load_noted(
     salesmen: int | None = None,
     depot: str | None = None,
     columns: Mapping[str, str] | None = None,
+    origin: Sequence[float] | None = None,
 ) -> Noted:
-    """Read a mission as `load` does, with what there is to say of how."""
+    """Read a mission as `load` does, with what there is to say of how.
+
+    `origin` is the place of the map frame's origin, for files whose own home is else: latitude and longitude in
+    degrees, and perhaps metres of altitude.
+    """
     path = _found(path_or_name)
-    given = {"robots": robots, "suitability": suitability, "salesmen": salesmen, "depot": depot, "columns": columns}
+    given = {
+        "robots": robots,
+        "suitability": suitability,
+        "salesmen": salesmen,
+        "depot": depot,
+        "columns": columns,
+        "origin": origin,
+    }
     if path.suffix.lower() == ".csv" and _is_task_list(path, robots):
         return _task_list(path, path_or_name, **given)
     is_yaml = path.suffix.lower() in YAML_SUFFIXES and path.is_file()

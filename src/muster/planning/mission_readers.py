@@ -11,8 +11,8 @@ from muster.mission.import_ledger import Ledger, summary_lines
 from muster.mission.model import Mission
 from muster.mission.system.plugins import Registry, require_words
 
-FLAGS = ("robots", "suitability", "salesmen", "depot", "columns")
-"""The parameters of `load` that go with some kinds of files."""
+FLAGS = ("robots", "suitability", "salesmen", "depot", "columns", "origin")
+"""The parameters of `load_noted` that go with some kinds of files."""
 
 
 @dataclass(frozen=True)

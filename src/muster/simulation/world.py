@@ -11,6 +11,7 @@ from muster.mission.model import Robot
 from muster.motion.grid import Floats
 from muster.motion.noise import Noise
 from muster.perception.laser import NO_DISCS, Scanner
+from muster.perception.sphere_scanner import SphereScan, SphereScanner
 from muster.simulation.port import SimulatedPort
 
 Observer = Callable[[float, Floats, Floats, Floats], None]
@@ -155,6 +156,13 @@ class SimulatedWorld(Protocol):
         ------
         ParameterError
             if the robot is not in the world, or a number is not finite.
+        """
+        ...
+
+    def scan_space(self, robot: str, scanner: SphereScanner) -> SphereScan:
+        """Return an exact scan all around from where a robot is, of a mission in space.
+
+        It sees what stands in the air, other robots and the ground. What is closed by rule alone is not seen.
         """
         ...
 

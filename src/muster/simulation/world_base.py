@@ -32,10 +32,11 @@ from muster.motion.noise import NO_NOISE, Noise
 from muster.motion.order_trajectory import TrajectoryMaker
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.perception.laser import NO_DISCS, Scanner
+from muster.perception.sphere_scanner import Slab, SphereScan, SphereScanner
 from muster.simulation.energy import NONE, ByRobot, SimulatedEnergy, capacity_in_usage, of_robot, require_by_robot
 from muster.simulation.port import Serving, SimulatedPort
 from muster.simulation.station_service import LOOK_S, WorldStations
-from muster.simulation.walls import Slab, faces_and_slabs
+from muster.simulation.walls import faces_and_slabs, things_in_air
 from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed, standing
 
 NEIGHBOURS = 10
@@ -171,6 +172,7 @@ class WorldBase(SimulatedWorld, ABC):
         self._in_time = mission.rules.usage == "time"
         self._walls: dict[tuple[Body, frozenset[str]], int] = {}
         self._faces: dict[tuple[Body, frozenset[str]], Faces] = {}
+        self._things: Faces | None = None
         self._doors_to_close = self._doors_closed
         self._numbers: dict[str, int] = {}
         self._robots: list[Robot] = []
@@ -413,6 +415,17 @@ class WorldBase(SimulatedWorld, ABC):
     @abstractmethod
     def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
         """See `SimulatedWorld`."""
+
+    def scan_space(self, robot: str, scanner: SphereScanner) -> SphereScan:
+        """See `SimulatedWorld`. Other robots are balls of their radius."""
+        if self._things is None:
+            self._things = (_NO_FACES, []) if self._map is None else things_in_air(self._map)
+        number, places = self._number(robot), self.positions
+        radii = np.array([other.radius_m for other in self._robots])
+        balls = np.delete(np.column_stack([places, radii]), number, axis=0)
+        faces, slabs = self._things
+        heading = float(self.headings[number])
+        return scanner.scan(places[number], heading, faces, slabs, self.ground_m, balls)
 
     @abstractmethod
     def _go_on(self, until_s: float) -> list[Event]:

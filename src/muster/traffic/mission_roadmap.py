@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from muster.mission.errors import ParameterError
+from muster.mission.lanes import Lanes
 from muster.mission.model import Mission, Point, Robot
 from muster.motion.actions import TaskMotion, plan
-from muster.motion.free_space import GridSpace, PolygonSpace
-from muster.motion.grid import Floats
-from muster.motion.map_world import World, body_of
-from muster.motion.paths import PathFinder
+from muster.motion.map_world import World
 from muster.traffic.journeys.roadmap_plan import RoadmapPlan
-from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
+from muster.traffic.roadmaps.doors import RoadmapDoors
 from muster.traffic.roadmaps.given_lanes import ClosedLane, closed_lanes
-from muster.traffic.roadmaps.roadmap import MARGIN_M, Roadmap
+from muster.traffic.roadmaps.roadmap import MARGIN_M, Layer, Roadmap, layer_of_lanes, layer_of_space
+from muster.traffic.roadmaps.robot_sizes import same_ways, sizes
+from muster.traffic.roadmaps.robot_spaces import RobotSpaces
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,26 +26,32 @@ class MissionRoadmap:
     Parameters
     ----------
     roadmap
-        for the widest of the robots.
+        with a layer for each size of the robots.
     robots
-        those that share it: the robots of kind `ground`, or all where none is.
+        those that share it: the robots of kind `ground`, or all where none is, that have a radius.
     point_of
-        for each place of these robots and their tasks, (x, y) metres in the map frame, the number of its point; -1
-        where no way leads there.
+        for each layer and place of its robots and their tasks, (x, y) metres in the map frame, the number of its
+        point; -1 where no way leads there.
     closed
-        the lanes of the mission that the widest robot cannot drive.
+        for each layer the lanes of the mission that its widest robot cannot drive.
+    spaces
+        the free space of each robot.
     doors
         of the mission; the roadmap is that with all of them open.
-    finder
-        of paths for the widest robot; None where there is no map.
+    layers
+        of which the roadmap is made.
+    maker
+        makes further ones.
     """
 
     roadmap: Roadmap
     robots: tuple[Robot, ...]
-    point_of: Mapping[Point, int]
-    closed: tuple[ClosedLane, ...] = ()
-    doors: RoadmapDoors = NO_DOORS
-    finder: PathFinder | None = None
+    point_of: tuple[Mapping[Point, int], ...]
+    closed: tuple[tuple[ClosedLane, ...], ...]
+    spaces: RobotSpaces
+    doors: RoadmapDoors
+    layers: tuple[Layer, ...]
+    maker: _Maker
 
     @classmethod
     def of(cls, mission: Mission, world: World | None = None, *, margin_m: float = MARGIN_M) -> MissionRoadmap:
@@ -58,43 +65,78 @@ class MissionRoadmap:
             as `World.of`.
         """
         robots = tuple(robot for robot in mission.robots if robot.kind == "ground") or mission.robots
-        sharing = (*robots, *(robot for robot in mission.newcomers if robot.kind == robots[0].kind))
-        widest = max(sharing, key=lambda robot: robot.radius_m)
-        if widest.radius_m <= 0:
+        kind = robots[0].kind
+        sharing = (*robots, *(robot for robot in mission.newcomers if robot.kind == kind))
+        mapped = mission.map is not None and mission.has_ways_by_map
+        spaces = RobotSpaces((world or World.of_travel(mission)) if mapped else None, kind)
+        maker = _Maker(mission.lanes, spaces, margin_m)
+        radii_m = sizes((robot.radius_m for robot in sharing), maker.alike)
+        if not radii_m:
             raise ParameterError(
                 "radius_m: 0 for all robots; expected a robot with a radius above 0: others share any lane"
             )
-        places = list(dict.fromkeys(place[:2] for place in _places(mission, sharing)))
-        space = None
-        if mission.map is not None and mission.has_ways_by_map:
-            world = world or World.of_travel(mission)
-            space = world.with_closed(()).free_space(widest.radius_m, widest.kind, three_d=False)
-            assert isinstance(space, GridSpace | PolygonSpace)
-        finder = None if space is None else PathFinder(space)
-        closed: list[ClosedLane] = []
-        if mission.lanes is None:
-            roadmap = Roadmap.of(space, widest.radius_m, places, margin_m=margin_m)
-        else:
-            roadmap = Roadmap.of_lanes(mission.lanes, widest.radius_m, places, space=space, margin_m=margin_m)
-            closed = closed_lanes(mission.lanes, widest.radius_m, finder)
-        doors = RoadmapDoors.of(mission, body_of(widest), world if space is not None else None)
-        point_of = dict(zip(places, roadmap.places.tolist(), strict=True))
-        return cls(roadmap, robots, point_of, tuple(closed), doors, finder)
+        owners = [
+            [robot for robot in sharing if narrower_m < robot.radius_m <= radius_m]
+            for narrower_m, radius_m in pairwise((0.0, *radii_m))
+        ]
+        places = [list(dict.fromkeys(place[:2] for place in _places(mission, own))) for own in owners]
+        layers = tuple(map(maker.layer, radii_m, places))
+        roadmap = Roadmap.joined(layers, margin_m)
+        points = iter(roadmap.places.tolist())
+        return cls(
+            roadmap=roadmap,
+            robots=tuple(robot for robot in robots if robot.radius_m > 0),
+            point_of=tuple({place: next(points) for place in own} for own in places),
+            closed=tuple(map(maker.closed_lanes, radii_m)),
+            spaces=spaces,
+            doors=RoadmapDoors.of(mission, kind, spaces.world),
+            layers=layers,
+            maker=maker,
+        )
 
     def plan(self, seed: int = 0) -> RoadmapPlan:
-        """What plans moves of robots on it."""
-        return RoadmapPlan(self.roadmap, self.clear, seed, self.doors)
+        """What plans moves of robots on it, and of others that join, of whatever size."""
+        return RoadmapPlan(self.roadmap, self.spaces, seed, self.doors, self._for_more)
 
-    def clear(self, points: Floats) -> bool:
-        """Whether the straight way along points, (n, 2) metres, is free for the widest robot."""
-        return self.finder is None or self.finder.clear(points)
+    def points(self, places: Iterable[Point], robot: Robot) -> list[int]:
+        """The points of places of a robot, or of its tasks."""
+        numbers = self.point_of[self.roadmap.layer_for(robot.radius_m)]
+        return [numbers[place[:2]] for place in places]
 
-    def points(self, places: Iterator[Point] | list[Point]) -> list[int]:
-        """The points of places of the mission."""
-        return [self.point_of[place[:2]] for place in places]
+    def _for_more(self, radii_m: Iterable[float]) -> Roadmap:
+        """The roadmap for robots of further sizes, too."""
+        made = {layer.radius_m: layer for layer in self.layers}
+        places = list(dict.fromkeys(place for points in self.point_of for place in points))
+        every = sizes([*made, *radii_m], self.maker.alike)
+        layers = [made[radius_m] if radius_m in made else self.maker.layer(radius_m, places) for radius_m in every]
+        return Roadmap.joined(layers, self.roadmap.margin_m)
 
 
-def _places(mission: Mission, robots: tuple[Robot, ...]) -> Iterator[Point]:
+@dataclass(frozen=True, eq=False)
+class _Maker:
+    """Makes layers of the lanes of a mission where it has them, else of its free space."""
+
+    lanes: Lanes | None
+    spaces: RobotSpaces
+    margin_m: float
+
+    def layer(self, radius_m: float, places: Sequence[Point]) -> Layer:
+        space = self.spaces.space(radius_m)
+        if self.lanes is None:
+            return layer_of_space(space, radius_m, places, margin_m=self.margin_m)
+        return layer_of_lanes(self.lanes, radius_m, places, space=space, margin_m=self.margin_m)
+
+    def closed_lanes(self, radius_m: float) -> tuple[ClosedLane, ...]:
+        return () if self.lanes is None else tuple(closed_lanes(self.lanes, radius_m, self.spaces.finder(radius_m)))
+
+    def alike(self, radius_m: float, wider_m: float) -> bool:
+        """Whether the same lanes and gaps are open to robots of two sizes."""
+        closed = [[lane.number for lane in self.closed_lanes(one)] for one in (radius_m, wider_m)]
+        space, wider = self.spaces.space(radius_m), self.spaces.space(wider_m)
+        return closed[0] == closed[1] and (space is None or wider is None or same_ways(space, wider))
+
+
+def _places(mission: Mission, robots: Sequence[Robot]) -> Iterator[Point]:
     """Where robots start and end, and where they begin and end their tasks."""
     for robot in robots:
         yield robot.position

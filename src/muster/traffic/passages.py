@@ -93,8 +93,9 @@ def _touches(roadmap: Roadmap, inside: Bools, beyond: Indices) -> bool:
 
 def _has_room_for_two(roadmap: Roadmap, points: Indices) -> bool:
     """Whether two of these points are out of each other's way."""
-    extent = np.ptp(roadmap.points[points], axis=0)
-    if np.hypot(*extent) < roadmap.reach:
+    layer = roadmap.layer[points[0]]
+    extent, reach_m = np.ptp(roadmap.points[points], axis=0), roadmap.reaches_m[layer, layer]
+    if np.hypot(*extent) < reach_m:
         return False
     gaps = roadmap.points[points[:200], None] - roadmap.points[None, points]
-    return bool((np.linalg.norm(gaps, axis=2) >= roadmap.reach).any())
+    return bool((np.linalg.norm(gaps, axis=2) >= reach_m).any())

@@ -48,15 +48,18 @@ class FlownFile:
         return ends[max(ends)] if ends else self.home
 
 
-def mission_of(path: Path, files: Sequence[FlownFile]) -> Noted:
+def mission_of(path: Path, files: Sequence[FlownFile], stated: Sequence[float] | None = None) -> Noted:
     """Return the mission of the flights of files; `path` is the file, or the folder of all of them.
+
+    The origin is as stated, degrees and perhaps metres of altitude; else, and where it has no altitude, the first home.
 
     Raises
     ------
     MissionError
         for the first fence with another boundary, the first home far from the others, and values that do not fit.
     """
-    origin = files[0].home
+    lat, lon, *height = stated or files[0].home
+    origin = lat, lon, height[0] if height else files[0].home[2]
     for file in files:
         require_near(file.fields, file.home[:2], origin, "mission.plannedHomePosition")
     spatial = not all(file.kind == "ground" for file in files)

@@ -8,6 +8,7 @@ position. Fences become the map.
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,10 +33,10 @@ _RALLY = passed_over("is a point to go to in an emergency: Muster's drones retur
 _SAID = passed_over("is said anew by what is exported", minor=True)
 
 
-def read_flight_plans(path: str | Path) -> Noted:
+def read_flight_plans(path: str | Path, origin: Sequence[float] | None = None) -> Noted:
     """The mission of a `.plan` file, or of all `.plan` files in a folder, with what became of each element.
 
-    The mission is in the plane if all vehicles are rovers or boats.
+    The mission is in the plane if all vehicles are rovers or boats. `origin` as `mission_of` has it.
 
     Raises
     ------
@@ -45,7 +46,7 @@ def read_flight_plans(path: str | Path) -> Noted:
         if pymap3d is not installed.
     """
     path = Path(path)
-    return mission_of(path, [_Reading(file).file() for file in _files(path)])
+    return mission_of(path, [_Reading(file).file() for file in _files(path)], origin)
 
 
 def _files(path: Path) -> list[Path]:

@@ -37,7 +37,7 @@ _READ, _HOME = read_as("itself"), read_as("home")
 _HOME_PARAMETER = passed_over("is of home, where nothing is done", minor=True)
 
 
-def read_wpl(path: Path) -> Noted:
+def read_wpl(path: Path, origin: Sequence[float] | None = None) -> Noted:
     """Return the mission of a file of way points, with what became of each of its fields.
 
     Raises
@@ -59,7 +59,7 @@ def read_wpl(path: Path) -> Noted:
     document = _Document(rows, commands, has_home=_home(commands[0]) is not None)
     flight = flight_of(commands[1:] if document.has_home else commands, {}, home)
     kind = "air" if _flies(flight, home) else "ground"
-    return mission_of(path, [_flown(path, home, kind, flight, document)])
+    return mission_of(path, [_flown(path, home, kind, flight, document)], origin)
 
 
 def _flown(path: Path, home: Degrees, kind: str, flight: Flight, document: _Document) -> FlownFile:

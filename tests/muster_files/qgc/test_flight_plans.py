@@ -49,6 +49,20 @@ def places(mission):
     return {task.id: tuple(round(c) for c in task.position) for task in mission.tasks}
 
 
+@pytest.mark.parametrize(("stated", "alt_m", "height_m"), [((59.911, 10.751), 20, 20), ((59.911, 10.751, 10), 10, 30)])
+def test_a_stated_origin_holds_for_flights_too(stated, alt_m, height_m, tmp_path):
+    file = tmp_path / "x.plan"
+    file.write_text(json.dumps(plan(item(22), item(16, FIRST))), encoding="utf-8")
+    robots = tmp_path / "robots.csv"
+    robots.write_text("id,lat,lon,kind\nr,59.911,10.751,air\n", encoding="utf-8")
+    mission = muster.read_site(file, robots, origin=stated).mission
+    assert mission.origin_wgs84.alt_m == alt_m
+    positions = {one.id: one.position for one in (*mission.robots, *mission.tasks)}
+    assert positions["r"][:2] == pytest.approx((0, 0), abs=1e-6)
+    assert positions["x-2"] == pytest.approx((0, 0, height_m), abs=1e-6)
+    assert positions["x"] == pytest.approx((-56, -111.4, height_m - 20), abs=0.1)
+
+
 def lost(found):
     return {row.kind: row.said for row in found.ledger.rows if row.how == "passed over"}
 

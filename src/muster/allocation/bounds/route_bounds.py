@@ -164,10 +164,11 @@ class _Robot:
         at: dict[int, list[_Label]] = {}
         waiting = [(place, label) for label in labels]
         first = len(self._problem.tasks) + 2 * len(self._problem.robots)
+        stations = () if to in self._problem.model.parts.over else self._problem.model.stations
         while waiting:
             here, label = waiting.pop()
             yield from self._moved(label, here, to)
-            for there, station in enumerate(self._problem.model.stations, first):
+            for there, station in enumerate(stations, first):
                 if not self._problem.model.may_call(self._i, there - first):
                     continue
                 for arrived in self._moved(label, here, there) if there != here else ():

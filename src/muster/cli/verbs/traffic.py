@@ -48,7 +48,7 @@ def command(
     """Show the roadmap that the robots of a MISSION share: its lanes, passages for one, dead ends and holding places.
 
     It is made of the mission's lanes where it gives them, else of its map, else of the open area around its places, for
-    the widest robot that drives.
+    each size of the robots that drive.
     """
     from muster.motion.map_world import World
     from muster.traffic.mission_roadmap import MissionRoadmap
@@ -111,18 +111,19 @@ def _print_forecast(forecast: Forecast) -> None:
 
 def _warn(mission: Mission, made: MissionRoadmap) -> None:
     """Print on standard error the lanes that are left out, and the places that no way leads to."""
-    for lane in made.closed:
+    for lane in dict.fromkeys(lane for lanes in made.closed for lane in lanes):
         click.echo(f"warning: lanes.edges[{lane.number}]: {lane.reason}; the lane is left out", err=True)
-    away = [f"({x:g}, {y:g})" for (x, y), point in made.point_of.items() if point < 0]
-    if away:
-        radius = f"radius {made.roadmap.radius_m:g} m"
-        click.echo(f"warning: no way for {radius} leads to {sequence(away)}", err=True)
+    for radius_m, point_of in zip(made.roadmap.radii_m.tolist(), made.point_of, strict=True):
+        away = [f"({x:g}, {y:g})" for (x, y), point in point_of.items() if point < 0]
+        if away:
+            click.echo(f"warning: no way for radius {radius_m:g} m leads to {sequence(away)}", err=True)
 
 
 def _figures(made: MissionRoadmap, found: tuple[Passage, ...]) -> dict[str, Any]:
     roadmap = made.roadmap
     return {
-        "radius_m": roadmap.radius_m,
+        "radius_m": float(roadmap.radii_m[-1]),
+        "radii_m": roadmap.radii_m.tolist(),
         "margin_m": roadmap.margin_m,
         "points": len(roadmap.points),
         "holding_places": int(roadmap.holding.sum()),
@@ -131,8 +132,10 @@ def _figures(made: MissionRoadmap, found: tuple[Passage, ...]) -> dict[str, Any]
         "length_m": float(roadmap.lengths_m[~roadmap.one_way].sum() / 2 + roadmap.lengths_m[roadmap.one_way].sum()),
         "passages_for_one": len(found),
         "dead_ends": sum(one.is_dead_end for one in found),
-        "lanes_left_out": [lane.number for lane in made.closed],
-        "places_without_a_way": [list(place) for place, point in made.point_of.items() if point < 0],
+        "lanes_left_out": sorted({lane.number for lanes in made.closed for lane in lanes}),
+        "places_without_a_way": list(
+            dict.fromkeys(place for points in made.point_of for place, point in points.items() if point < 0)
+        ),
     }
 
 
@@ -149,5 +152,6 @@ def _print(mission: Mission, made: MissionRoadmap, found: tuple[Passage, ...]) -
         ("  dead ends", figures["dead_ends"]),
     ]
     print_table(("roadmap", "number"), [(name, str(count)) for name, count in rows], right=("number",))
-    about = f"{counted(len(made.robots), 'robot')}, radius {figures['radius_m']:g} m, margin {figures['margin_m']:g} m"
+    radii = sequence([f"{radius_m:g} m" for radius_m in figures["radii_m"]])
+    about = f"{counted(len(made.robots), 'robot')}, radius {radii}, margin {figures['margin_m']:g} m"
     click.echo(f"{mission.name}: {about}; {figures['length_m']:.0f} m of lanes")

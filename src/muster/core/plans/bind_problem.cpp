@@ -95,7 +95,7 @@ void bind_problem(nb::module_& m) {
              const std::vector<std::vector<int>>& apart, Indices least_stops, Numbers acceleration, Numbers climb,
              Numbers turn, bool over_map, bool makespan_includes_return, int meters, Numbers load, Numbers pending,
              Indices pickup, Numbers most_aboard, Numbers aboard_at_start, Numbers pending_at_start, Numbers energy,
-             Numbers energy_at_start, const Stations& stations, Flags calls, Numbers waiting, Flags waits) {
+             Numbers energy_at_start, const Stations& stations, Flags calls, Flags over, Numbers waiting, Flags waits) {
             const bool table_fits = table.size() == 0 || table.ndim() == 3;
             if (allowed.ndim() != 2 || actuation_cost.ndim() != 2 || kind.size() != capacity.size() ||
                 entry.ndim() != 3 || entry.shape(2) != 3 || exit.ndim() != 3 || exit.shape(2) != 3 || !table_fits) {
@@ -153,6 +153,7 @@ void bind_problem(nb::module_& m) {
             data.energy = numbers(energy);
             data.energy_at_start = numbers(energy_at_start);
             data.calls = flags(calls);
+            data.over = flags(over);
             data.stations = stations_of(stations);
             data.waiting = numbers(waiting);
             data.waits = flags(waits);
@@ -165,7 +166,7 @@ void bind_problem(nb::module_& m) {
           "unit"_a, "parts"_a, "abilities"_a, "needs"_a, "exclusive"_a, "same_crew"_a, "apart"_a, "least_stops"_a,
           "acceleration"_a, "climb"_a, "turn"_a, "over_map"_a, "makespan_includes_return"_a, "meters"_a, "load"_a,
           "pending"_a, "pickup"_a, "most_aboard"_a, "aboard_at_start"_a, "pending_at_start"_a, "energy"_a,
-          "energy_at_start"_a, "stations"_a, "calls"_a, "waiting"_a, "waits"_a,
+          "energy_at_start"_a, "stations"_a, "calls"_a, "over"_a, "waiting"_a, "waits"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
           "`time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, "
@@ -187,7 +188,8 @@ void bind_problem(nb::module_& m) {
           "`most_aboard` and `aboard_at_start` (m, meters); `energy` and `energy_at_start` (m,) in the unit of "
           "usage, the reserve taken off, inf without a limit of energy; `stations` (refill by second, swap_s, unloads, "
           "partial, "
-          "slots), whose places stand after the ends of robots; `waiting` (n + 2m, n + 2m) seconds for others between "
+          "slots), whose places stand after the ends of robots; `over` (n,) marks tasks that stand for what was done, before "
+          "which no station is called at; `waiting` (n + 2m, n + 2m) seconds for others between "
           "places, of the robots "
           "that "
           "`waits` (m,) marks. Raises ValueError if shapes do not fit.")

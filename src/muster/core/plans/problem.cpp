@@ -163,6 +163,7 @@ void Problem::check_times() const {
             "relations need a row for each task");
   }
   require(fits(data_.calls.size(), robots * data_.stations.size()), "calls need a flag for each robot and station");
+  require(fits(data_.over.size(), tasks), "over needs a flag for each task");
   const std::size_t kinds = tasks ? data_.allowed.size() / tasks : 0;
   for (const auto& row : data_.parts) {
     require(std::ranges::all_of(row, [&](const TeamPart& part) { return part.allowed.size() == kinds; }),

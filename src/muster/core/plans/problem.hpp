@@ -99,6 +99,7 @@ struct ProblemData {
   std::vector<double> energy, energy_at_start;
   std::vector<Station> stations;
   std::vector<char> calls;  // robots x stations: whether a robot may call there; empty: everybody may
+  std::vector<char> over;   // by task, whether it stands for what was done; empty: none does
   // What is waited for others on the way between two places (places x places, seconds), by robots that share lanes;
   // empty: nothing.
   std::vector<double> waiting;
@@ -272,6 +273,7 @@ class Problem {
     return data_.calls.empty() || data_.calls[static_cast<std::size_t>(robot) * stations() + station] != 0;
   }
   bool has_call_limits() const { return !data_.calls.empty(); }
+  bool is_over(int task) const { return !data_.over.empty() && data_.over[task] != 0; }
   int place_of_station(int number) const { return tasks_ + 2 * robots_ + number; }
   // What a energy can hold, and holds at first, above its reserve; inf: without a limit of energy.
   double energy(int robot) const { return data_.energy.empty() ? kInfinity : data_.energy[robot]; }

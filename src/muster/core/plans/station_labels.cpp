@@ -18,10 +18,11 @@ constexpr std::size_t kMostLabels = 32;  // at a stop
 bool StationCalls::cross(int robot, Labels& labels, int from, int to, double rest_before, double rest_after) {
   const auto [first, last] = labels.at_stop.back();
   const bool is_task = to < problem_.tasks();
+  const bool may_call = !is_task || !problem_.is_over(to);  // what is over was done without
   layer_ = static_cast<int>(labels.all.size());
   current_.clear();
   // Labels of stations stand before those of the stop.
-  for (int parent = first; parent < last; ++parent) {
+  for (int parent = first; may_call && parent < last; ++parent) {
     if (!runs_short(robot, labels, labels.all[parent], rest_before)) continue;
     for (const int station : stations_between(robot, from, to)) {
       const int called = call(robot, labels, parent, from, station);

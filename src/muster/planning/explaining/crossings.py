@@ -52,7 +52,7 @@ class _Search:
     def __init__(self, problem: Problem, made: MissionRoadmap) -> None:
         self.problem, self.made = problem, made
         self.robots = made.robots
-        starts = made.points([robot.position for robot in made.robots])
+        starts = [made.points([robot.position], robot)[0] for robot in made.robots]
         self.crossings = Crossings(made.roadmap, starts, [robot.radius_m for robot in made.robots])
         self.number = {robot.id: k for k, robot in enumerate(problem.robots)}
 
@@ -102,8 +102,8 @@ class _Search:
         motion = plan(task, self.robots[robot])
         places = [motion.entry, motion.exit] if isinstance(motion, TaskMotion) else []
         end = self._end(self.robots[robot])
-        return self.made.points(places) + ([] if end is None else [end])
+        return self.made.points(places, self.robots[robot]) + ([] if end is None else [end])
 
     def _end(self, robot: Robot) -> int | None:
         place = robot.place_at_end(self.problem.mission.rules)
-        return None if place is None else self.made.points([place])[0]
+        return None if place is None else self.made.points([place], robot)[0]

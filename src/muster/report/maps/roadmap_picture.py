@@ -58,8 +58,9 @@ def plot_roadmap(
     ]
     add_legend(ax, entries)
     dead_ends = sum(one.is_dead_end for one in passages)
+    radii = ", ".join(f"{radius_m:g}" for radius_m in roadmap.radii_m)
     facts = [
-        f"roadmap for radius {roadmap.radius_m:g} m: {len(roadmap.points)} points, {len(roadmap.edges)} edges",
+        f"roadmap for radius {radii} m: {len(roadmap.points)} points, {len(roadmap.edges)} edges",
         f"passages for one: {len(passages)}, of them dead ends: {dead_ends}",
     ]
     add_title(ax, mission.name, facts)
@@ -119,13 +120,14 @@ def _draw_points(ax: Any, roadmap: Roadmap, inch_per_m: float) -> list[tuple[Any
 def _draw_places(ax: Any, made: MissionRoadmap) -> list[tuple[Any, str]]:
     """Draw where robots start, and the other places of the mission."""
     starts = {robot.position[:2] for robot in made.robots}
-    others = [place for place in made.point_of if place not in starts]
+    places = dict.fromkeys(place for points in made.point_of for place in points)
+    others = [place for place in places if place not in starts]
     found = []
-    for label, places, marker in (("start", sorted(starts), "s"), ("task or end", others, "o")):
-        if places:
+    for label, those, marker in (("start", sorted(starts), "s"), ("task or end", others, "o")):
+        if those:
             look = {"linestyle": "none", "markersize": 4.5, "markerfacecolor": "white", "markeredgewidth": 1.0}
             (mark,) = ax.plot(
-                *np.array(places).T,
+                *np.array(those).T,
                 marker=marker,
                 markeredgecolor=_PLACE,
                 gid=label.replace(" ", "-"),

@@ -41,7 +41,7 @@ class Crossings:
     roadmap
         what they share.
     starts, radii_m
-        the point of each robot, -1 for none, and its radius.
+        the point of each robot on its layer, -1 for none, and its radius.
     """
 
     roadmap: Roadmap
@@ -77,22 +77,27 @@ class Crossings:
         return self._once(("together", one, other), lambda: self._searched(one, other))
 
     def _searched(self, one: int, other: int) -> _Reached | None:
-        part = self._part[self.starts[one]] if min(self.starts[one], self.starts[other]) >= 0 else -1
-        if part < 0 or part != self._part[self.starts[other]]:
+        if min(self.starts[one], self.starts[other]) < 0:
             return None
+        parts = int(self._part[self.starts[one]]), int(self._part[self.starts[other]])
         gap = self.radii_m[one] + self.radii_m[other] + self.roadmap.margin_m
-        joint = self._once(("joint", int(part), gap), lambda: self._joint(int(part), gap))
+        joint = self._once(("joint", parts, gap), lambda: self._joint(parts, gap))
         if joint is None:
             return None
         return _Reached(joint.points, joint.reached(self.starts[one], self.starts[other]))
 
-    def _joint(self, part: int, gap_m: float) -> JointPositions | None:
-        """The joint positions on a part of the roadmap, unless it is large and open, or there are too many."""
-        points = np.flatnonzero(self._part == part)
-        moves = most_moves(self.roadmap, points)
-        if moves > _MOST_MOVES or (moves > _FEW_MOVES and _is_open(self.roadmap, points)):
+    def _joint(self, parts: tuple[int, int], gap_m: float) -> JointPositions | None:
+        """The joint positions on two parts of the roadmap, unless they are large and open, or there are too many.
+
+        None where nobody on one part is in the way of another on the other one, too: they are rooms apart.
+        """
+        points = np.flatnonzero(self._part == parts[0]), np.flatnonzero(self._part == parts[1])
+        moves = most_moves(self.roadmap, *points)
+        if moves > _MOST_MOVES or (moves > _FEW_MOVES and _is_open(self.roadmap, *points)):
             return None
-        return JointPositions.of(self.roadmap, points, gap_m)
+        if parts[0] != parts[1] and not _meet(self.roadmap, *points, gap_m):
+            return None
+        return JointPositions.of(self.roadmap, *points, gap_m)
 
     @property
     def _part(self) -> Indices:
@@ -109,9 +114,9 @@ class Crossings:
 
 @dataclass(frozen=True, eq=False)
 class _Reached:
-    """Joint positions (k, k) on points (k,) that two robots reach."""
+    """Joint positions (k, l) on points, (k,) and (l,), that two robots reach."""
 
-    points: Indices
+    points: tuple[Indices, Indices]
     joint: Bools
 
     @property
@@ -120,10 +125,10 @@ class _Reached:
 
     def at_first(self, goals: Sequence[int]) -> bool:
         """Whether the first robot reaches each of some points."""
-        return bool(self.joint[np.searchsorted(self.points, goals)].any(axis=1).all())
+        return bool(self.joint[np.searchsorted(self.points[0], goals)].any(axis=1).all())
 
     def at_both(self, ends: tuple[int, int]) -> bool:
-        a, b = np.searchsorted(self.points, ends)
+        a, b = (np.searchsorted(points, end) for points, end in zip(self.points, ends, strict=True))
         return bool(self.joint[a, b])
 
 
@@ -148,60 +153,70 @@ def _reached_alone(roadmap: Roadmap, start: int) -> Bools:
     return found
 
 
-def _is_open(roadmap: Roadmap, points: Indices) -> bool:
-    """Whether all edges of a part lead both ways, and robots get past each other at most of its points.
+def _is_open(roadmap: Roadmap, one: Indices, other: Indices) -> bool:
+    """Whether all edges of two parts lead both ways, and robots get past each other at most of their points.
 
     Any two robots change places there, and a search would take long to say so.
     """
-    inside = roadmap.edges[np.isin(roadmap.edges[:, 0], points)]
+    inside = roadmap.edges[np.isin(roadmap.edges[:, 0], np.union1d(one, other))]
     n = len(roadmap.points)
     both_ways = np.isin(inside[:, 0] * n + inside[:, 1], inside[:, 1] * n + inside[:, 0]).all()
-    return bool(both_ways and roadmap.passable[points].mean() > 0.5)
+    passed = (roadmap.passed[roadmap.layer[by[0]], points].mean() for points, by in ((one, other), (other, one)))
+    return bool(both_ways and min(passed) > 0.5)
+
+
+def _meet(roadmap: Roadmap, one: Indices, other: Indices, gap_m: float) -> bool:
+    """Whether a robot on one part comes near to one on another."""
+    first, second = (np.isin(np.arange(len(roadmap.points)), points) for points in (one, other))
+    start = np.repeat(roadmap.edges[:, 0], np.diff(roadmap.reach_start))
+    near = roadmap.reach_m < gap_m
+    there = (first[start] & second[roadmap.reach_point]) | (second[start] & first[roadmap.reach_point])
+    return bool((near & there).any())
 
 
 @dataclass(frozen=True, eq=False)
 class JointPositions:
-    """The moves between joint positions (a, b) of two robots, number a * k + b.
+    """The moves between joint positions (a, b) of two robots on (k,) and (l,) points, number a * l + b.
 
     Parameters
     ----------
     points
-        (k,): the points of the part.
+        of the parts of both.
     moves
-        (k^2, k^2) sparse.
+        (k * l, k * l) sparse.
     """
 
-    points: Indices
+    points: tuple[Indices, Indices]
     moves: Any
 
     @classmethod
-    def of(cls, roadmap: Roadmap, points: Indices, gap_m: float) -> JointPositions:
+    def of(cls, roadmap: Roadmap, one: Indices, other: Indices, gap_m: float) -> JointPositions:
         """On these points, of two robots in each other's way where they are nearer than `gap_m`."""
         from scipy.sparse import csr_array
 
-        k = len(points)
-        edge, hit = _hits(roadmap, points, gap_m)
-        u, v = _local(roadmap, points)[roadmap.edges[edge]].T
-        which, other = np.nonzero(~hit)
-        here, there = u[which], v[which]
-        start = np.concatenate([here * k + other, other * k + here])
-        end = np.concatenate([there * k + other, other * k + there])
-        return cls(points, csr_array((np.ones(len(start), dtype=np.int8), (start, end)), shape=(k * k, k * k)))
+        size, columns = len(one) * len(other), len(other)
+        here, there, beside = _moves(roadmap, one, other, gap_m)
+        here_too, there_too, beside_too = _moves(roadmap, other, one, gap_m)
+        start = np.concatenate([here * columns + beside, beside_too * columns + here_too])
+        end = np.concatenate([there * columns + beside, beside_too * columns + there_too])
+        moves = csr_array((np.ones(len(start), dtype=np.int8), (start, end)), shape=(size, size))
+        return cls((one, other), moves)
 
     def reached(self, one: int, other: int) -> Bools:
-        """(k, k): the joint positions that two robots reach from two points, by their numbers in the roadmap."""
+        """(k, l): the joint positions that two robots reach from two points, by their numbers in the roadmap."""
         from scipy.sparse.csgraph import breadth_first_order
 
-        k = len(self.points)
-        a, b = np.searchsorted(self.points, [one, other])
-        found = np.zeros(k * k, dtype=np.bool_)
-        found[breadth_first_order(self.moves, int(a * k + b), return_predecessors=False)] = True
-        return found.reshape(k, k)
+        rows, columns = map(len, self.points)
+        a, b = np.searchsorted(self.points[0], one), np.searchsorted(self.points[1], other)
+        found = np.zeros(rows * columns, dtype=np.bool_)
+        found[breadth_first_order(self.moves, int(a * columns + b), return_predecessors=False)] = True
+        return found.reshape(rows, columns)
 
 
-def most_moves(roadmap: Roadmap, points: Indices) -> int:
-    """How many joint moves there may be on a part of a roadmap."""
-    return 2 * len(points) * int(np.isin(roadmap.edges[:, 0], points).sum())
+def most_moves(roadmap: Roadmap, one: Indices, other: Indices) -> int:
+    """How many joint moves there may be on two parts of a roadmap."""
+    edges = [int(np.isin(roadmap.edges[:, 0], points).sum()) for points in (one, other)]
+    return edges[0] * len(other) + edges[1] * len(one)
 
 
 def _local(roadmap: Roadmap, points: Indices) -> Indices:
@@ -211,16 +226,19 @@ def _local(roadmap: Roadmap, points: Indices) -> Indices:
     return local
 
 
-def _hits(roadmap: Roadmap, points: Indices, gap_m: float) -> tuple[Indices, Bools]:
-    """The edges between these points, and at which of the points (edges, k) another robot is in the way of each."""
-    local = _local(roadmap, points)
+def _moves(roadmap: Roadmap, points: Indices, others: Indices, gap_m: float) -> tuple[Indices, Indices, Indices]:
+    """Moves of a robot between points, from and to, and where another is that is not in the way, (l,) each."""
+    local, beside = _local(roadmap, points), _local(roadmap, others)
     edge = np.flatnonzero((local[roadmap.edges] >= 0).all(axis=1))
     number = np.full(len(roadmap.edges), -1, dtype=np.int64)
     number[edge] = np.arange(len(edge))
-    hit = np.zeros((len(edge), len(points)), dtype=np.bool_)
+    hit = np.zeros((len(edge), len(others)), dtype=np.bool_)
     row = np.repeat(number, np.diff(roadmap.reach_start))
-    column = local[roadmap.reach_point]
+    column = beside[roadmap.reach_point]
     near = (roadmap.reach_m < gap_m) & (row >= 0) & (column >= 0)
     hit[row[near], column[near]] = True
-    hit[np.arange(len(edge)), local[roadmap.edges[edge, 0]]] = True
-    return edge, hit
+    begins = beside[roadmap.edges[edge, 0]]
+    hit[np.flatnonzero(begins >= 0), begins[begins >= 0]] = True
+    which, other = np.nonzero(~hit)
+    here, there = local[roadmap.edges[edge]].T
+    return here[which], there[which], other

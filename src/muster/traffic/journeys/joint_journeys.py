@@ -57,7 +57,7 @@ class JointJourneys:
 
     def knows(self, travellers: Sequence[Traveller]) -> bool:
         """Whether the roadmap has the places of all."""
-        return all(stop.at in self._on.number for who in travellers for stop in who.stops)
+        return all(map(self._on.knows, travellers))
 
     def change(self, travellers: Sequence[Traveller], *, ways: int) -> None:
         """The same robots go elsewhere; so many ways are sought beside those of the changed ones."""

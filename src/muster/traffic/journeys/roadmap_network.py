@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,6 +17,7 @@ from muster.traffic.journeys.travellers import Move, Point, Traveller
 from muster.traffic.roadmaps.edge_conflicts import conflicts
 from muster.traffic.roadmaps.lane_sections import ON_LANE_M
 from muster.traffic.roadmaps.roadmap import Indices, Roadmap
+from muster.traffic.roadmaps.robot_spaces import RobotSpaces
 from muster.traffic.single_moves import MovePlanner
 
 _SAME_M = 1e-6
@@ -24,9 +27,16 @@ _BLOCKED_M = (0.0, 0.1, 0.3)
 """Metres at a place beside it that may be blocked, where else no point is seen: robots err in where they are."""
 
 
+class Standing(NamedTuple):
+    """A place of a robot, and the layer of the roadmap on which that is."""
+
+    at: Point
+    layer: int
+
+
 @dataclass(frozen=True)
 class Network:
-    """A roadmap, the numbers of its points by place, and its two planners.
+    """A roadmap, the numbers of its points by place and layer, and its two planners.
 
     Parameters
     ----------
@@ -35,18 +45,38 @@ class Network:
     """
 
     roadmap: Roadmap
-    number: Mapping[Point, int]
+    number: Mapping[Standing, int]
     planner: MovePlanner
     intervals: core.SafeIntervals
     ends: list[tuple[int, int]]
 
     @classmethod
     def of(cls, roadmap: Roadmap) -> Network:
-        number = {(x, y): k for k, (x, y) in enumerate(roadmap.points.tolist())}
+        standing = zip(roadmap.points.tolist(), roadmap.layer.tolist(), strict=True)
+        number = {Standing((x, y), layer): k for k, ((x, y), layer) in enumerate(standing)}
         planner = MovePlanner(roadmap)
         rests = roadmap.holding.tolist()
         intervals = core.SafeIntervals(planner.shared, rests, roadmap.margin_m)
         return cls(roadmap, number, planner, intervals, roadmap.edges.tolist())
+
+    def standing(self, who: Traveller, at: Point) -> Standing:
+        """A place as that of a robot."""
+        return Standing(at, self.roadmap.layer_for(who.robot.radius_m))
+
+    def point(self, who: Traveller, at: Point) -> int:
+        """The number of the point of a robot's place."""
+        return self.number[self.standing(who, at)]
+
+    @cached_property
+    def edges_by_layer(self) -> list[int]:
+        """How many edges each layer has."""
+        layers = len(self.roadmap.radii_m)
+        found: list[int] = np.bincount(self.roadmap.edge_layer, minlength=layers).tolist()
+        return found
+
+    def knows(self, who: Traveller) -> bool:
+        """Whether the places of a robot have points."""
+        return all(self.standing(who, at) in self.number for at in (who.start, *(stop.at for stop in who.stops)))
 
     def move(self, traveller: int, edge: int, stop: int) -> Move:
         """A move along an edge."""
@@ -57,14 +87,14 @@ class Network:
         """The length of the shortest way to a robot's first stop; below 0 without one."""
         if not who.stops:
             return -1.0
-        return self.intervals.metres_to(self.number[who.stops[0].at])[self.number[who.start]]
+        return self.intervals.metres_to(self.point(who, who.stops[0].at))[self.point(who, who.start)]
 
     def told(self, who: Traveller) -> core.Traveller:
         """A traveller as the core knows it."""
         limits, faces = limits_of(who.robot), kinematics_named(who.robot.kinematics).faces_its_way
         return core.Traveller(
-            start=self.number[who.start],
-            stops=[(self.number[stop.at], stop.hold_s) for stop in who.stops],
+            start=self.point(who, who.start),
+            stops=[(self.point(who, stop.at), stop.hold_s) for stop in who.stops],
             radius=who.robot.radius_m,
             speed=limits.speed_mps,
             heading=who.heading_rad,
@@ -76,35 +106,40 @@ class Network:
         )
 
 
-def with_places(roadmap: Roadmap, clear: Callable[[Floats], bool], places: Sequence[Point]) -> Roadmap:
-    """The roadmap with a point for each place that is none yet.
+def with_places(roadmap: Roadmap, spaces: RobotSpaces, places: Iterable[Standing]) -> Roadmap:
+    """The roadmap with a point for each place that is none yet, joined to others of its layer.
 
     One on a given lane, but for its ends, divides it. Any other is joined to the nearest points from which it is seen.
     """
-    known = {tuple(point) for point in roadmap.points.tolist()}
-    fresh = np.array([place for place in dict.fromkeys(places) if place not in known], dtype=np.float64).reshape(-1, 2)
-    if not len(fresh):
+    known = {Standing((x, y), k) for (x, y), k in zip(roadmap.points.tolist(), roadmap.layer.tolist(), strict=True)}
+    fresh = [place for place in dict.fromkeys(places) if place not in known]
+    if not fresh:
         return roadmap
-    points = np.concatenate([roadmap.points, fresh])
-    nodes = roadmap.points[: len(roadmap.names)]
-    lanes, edges = (roadmap.edges if roadmap.names else roadmap.edges[:0]), [roadmap.edges]
-    for k in range(len(roadmap.points), len(points)):
-        at_node = len(nodes) > 0 and np.hypot(*(nodes - points[k]).T).min() <= roadmap.radius_m
-        pieces = lanes[:0] if at_node else _dividing(points, lanes, k)
+    nodes, lanes = roadmap.points[: len(roadmap.names)], roadmap.edges if roadmap.names else roadmap.edges[:0]
+    points = np.concatenate([roadmap.points, [place.at for place in fresh]])
+    layer = np.append(roadmap.layer, [place.layer for place in fresh])
+    edges = [roadmap.edges]
+    for k in range(len(roadmap.points), len(roadmap.points) + len(fresh)):
+        radius_m, own = float(roadmap.radii_m[layer[k]]), np.flatnonzero(layer[:k] == layer[k])
+        at_node = len(nodes) > 0 and np.hypot(*(nodes - points[k]).T).min() <= radius_m
+        pieces = lanes[:0] if at_node else _dividing(points, lanes[layer[lanes[:, 0]] == layer[k]], k)
         if len(pieces):
             lanes = np.concatenate([lanes, pieces])
         else:
-            seen = _seen(clear, points, k)
+            seen = own[_seen(partial(spaces.clear, radius_m=radius_m), points[own], points[k])]
             pieces = np.array([pair for j in seen for pair in ((k, j), (j, k))], dtype=np.int64).reshape(-1, 2)
         edges.append(pieces)
     joined = np.concatenate(edges)
+    more = len(joined) - len(roadmap.edges)
     speeds = np.append(roadmap.speed_mps, roadmap.speeds_along(points[joined[len(roadmap.edges) :]]))
     order = np.lexsort(joined.T[::-1])
-    joined, more = joined[order], len(joined) - len(roadmap.edges)
-    start, point, metres = conflicts(points, joined, roadmap.reach, roadmap.sections)
+    joined = joined[order]
+    start, point, metres = conflicts(points, joined, roadmap.reaches_m, roadmap.sections, layer)
     return replace(
         roadmap,
         points=points,
+        layer=layer,
+        narrow=np.append(roadmap.narrow, np.ones(len(fresh), dtype=np.bool_)),
         edges=joined,
         clearance_m=np.append(roadmap.clearance_m, np.zeros(more))[order],
         reach_start=start,
@@ -127,13 +162,13 @@ def _dividing(points: Floats, lanes: Indices, k: int) -> Indices:
     return np.unique(pieces, axis=0)
 
 
-def _seen(clear: Callable[[Floats], bool], points: Floats, k: int) -> list[int]:
-    """The nearest of the points before one to which the way is free, but for metres in which a robot may err."""
-    apart = np.linalg.norm(points[:k] - points[k], axis=1)
+def _seen(clear: Callable[[Floats], bool], points: Floats, at: Floats) -> list[int]:
+    """The nearest of the points from which a place is seen, but for metres in which a robot may err, by number."""
+    apart = np.linalg.norm(points - at, axis=1)
     nearest = np.argsort(apart)[: 4 * _ENTRIES]
     for blocked_m in _BLOCKED_M:
         share = np.minimum(1.0, blocked_m / np.maximum(apart, _SAME_M))[:, None]
-        begin = points[k] + share * (points[:k] - points[k])
+        begin = at + share * (points - at)
         seen = [j for j in nearest.tolist() if clear(np.stack([begin[j], points[j]]))]
         if seen:
             return seen[:_ENTRIES]

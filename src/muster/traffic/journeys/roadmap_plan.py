@@ -11,10 +11,11 @@ import numpy as np
 from muster import core
 from muster.motion.grid import Floats
 from muster.traffic.journeys.joint_journeys import JointJourneys
-from muster.traffic.journeys.roadmap_network import Network, with_places
+from muster.traffic.journeys.roadmap_network import Network, Standing, with_places
 from muster.traffic.journeys.travellers import Move, Point, Traveller
 from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
 from muster.traffic.roadmaps.roadmap import Bools, Roadmap
+from muster.traffic.roadmaps.robot_spaces import Disc, RobotSpaces
 from muster.traffic.single_moves import Parameters
 
 _THERE_M = 1e-3
@@ -38,12 +39,14 @@ class RoadmapPlan:
     ----------
     roadmap
         has points for starts and goals; a place that is none gets one.
-    clear
-        whether the straight way between two places, (2, 2) metres, is free for the widest robot.
+    spaces
+        the free space of each robot.
     seed
         of the orders that are tried.
     doors
         of the mission, which close and open.
+    for_more
+        makes the roadmap for robots of further radii, which may join; without it there are none.
     cut_off
         see `Planner`; where many travel on a large roadmap this is not found out: any of them may be.
     stepwise
@@ -51,15 +54,17 @@ class RoadmapPlan:
     """
 
     roadmap: Roadmap
-    clear: Callable[[Floats], bool]
+    spaces: RobotSpaces = RobotSpaces()
     seed: int = 0
     doors: RoadmapDoors = NO_DOORS
+    for_more: Callable[[Sequence[float]], Roadmap] | None = None
     cut_off: frozenset[int] = frozenset()
     stepwise: bool = False
     _closed: frozenset[str] = field(init=False)
     _priorities: list[str] = field(default_factory=list)
     _goals: dict[str, tuple[Point | None, int]] = field(default_factory=dict)  # and in how many plans by steps
     _known: Network | None = None
+    _more_m: list[float] = field(default_factory=list)  # radii of robots that have joined
 
     def __post_init__(self) -> None:
         self._closed = self.doors.closed
@@ -68,9 +73,9 @@ class RoadmapPlan:
         """From now on these doors are closed, and the others open."""
         self._closed, self._known = frozenset(doors), None
 
-    def is_open(self, piece: Floats) -> bool:
-        """Whether a straight way (2, 2) leads through no closed door."""
-        return bool(self.doors.open_ways(piece[np.newaxis], self._closed)[0])
+    def is_open(self, piece: Floats, radius_m: float) -> bool:
+        """See `Planner`."""
+        return bool(self.doors.open_ways(piece[np.newaxis], self._closed, radius_m)[0])
 
     def __call__(self, travellers: Sequence[Traveller]) -> list[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
@@ -82,7 +87,8 @@ class RoadmapPlan:
         """See `Planner`."""
         on = self._network_for(travellers)
         self.cut_off = frozenset(range(len(travellers)))
-        if len(travellers) * len(on.roadmap.edges) > _MOST_BY_INTERVALS:
+        edges = on.edges_by_layer
+        if sum(edges[on.standing(who, who.start).layer] for who in travellers) > _MOST_BY_INTERVALS:
             return None
         ways = _WAYS if self._priorities else _FIRST_WAYS
         shared = self._shared(on, travellers, ways)
@@ -102,7 +108,7 @@ class RoadmapPlan:
 
         `places` are others where they may have to go later.
         """
-        on = self._network_for(travellers, places)
+        on = self._network_for(travellers, [(who, place) for who in travellers for place in places])
         return JointJourneys(on, travellers, self._shared(on, travellers, ways))
 
     def reaches(self, travellers: Sequence[Traveller], number: int, places: Sequence[Point]) -> list[bool]:
@@ -110,43 +116,71 @@ class RoadmapPlan:
         from scipy.sparse import csr_matrix
         from scipy.sparse.csgraph import breadth_first_order
 
-        on, who = self._network_for(travellers, places), travellers[number]
+        who = travellers[number]
+        on = self._network_for(travellers, [(who, place) for place in places])
         free = on.roadmap.edges[self._past_fixed(on, travellers, who.robot.radius_m)]
         size = len(on.roadmap.points)
         graph = csr_matrix((np.ones(len(free)), tuple(free.T)), shape=(size, size))
-        reached = set(breadth_first_order(graph, on.number[who.start], return_predecessors=False).tolist())
-        return [on.number[place] in reached for place in places]
+        reached = set(breadth_first_order(graph, on.point(who, who.start), return_predecessors=False).tolist())
+        return [on.point(who, place) in reached or not self._no_way(travellers, who, place) for place in places]
+
+    def _no_way(self, travellers: Sequence[Traveller], who: Traveller, place: Point) -> bool:
+        """Whether it is proven that a robot which finds no way on the roadmap has none; of lanes the roadmap is all."""
+        if self.roadmap.names:
+            return True
+        radius_m, margin_m = who.robot.radius_m, self.roadmap.margin_m
+        discs = [
+            Disc(other.start, radius_m + other.robot.radius_m + margin_m)
+            for other in travellers
+            if other.fixed and other.robot.id != who.robot.id
+        ]
+        return self.spaces.separates(who.start, place, radius_m, closed=self._closed, discs=discs)
 
     def _past_fixed(self, on: Network, travellers: Sequence[Traveller], radius_m: float) -> Bools:
         """Which edges keep a robot away from those who never leave, but where it only moves away from one."""
         apart_m = np.zeros(len(on.roadmap.points))
         for other in travellers:
             if other.fixed:
-                at = on.number[other.start]
+                at = on.point(other, other.start)
                 apart_m[at] = max(apart_m[at], radius_m + other.robot.radius_m + on.roadmap.margin_m)
         edges = np.repeat(np.arange(len(on.roadmap.edges)), np.diff(on.roadmap.reach_start))
         near = on.roadmap.reach_m < apart_m[on.roadmap.reach_point]
         return np.asarray(np.bincount(edges[near], minlength=len(on.roadmap.edges)) == 0)
 
-    def _network_for(self, travellers: Sequence[Traveller], more: Sequence[Point] = ()) -> Network:
+    def _network_for(self, travellers: Sequence[Traveller], more: Sequence[tuple[Traveller, Point]] = ()) -> Network:
         """The roadmap with their places, and some more, as it was for the last plan where that has them."""
-        places = [*more, *(place for who in travellers for place in (who.start, *(stop.at for stop in who.stops)))]
-        places += [place for who in travellers if who.fixed for place in self._around(who)]
+        self._admit(travellers)
+        layer = {who.robot.radius_m: self.roadmap.layer_for(who.robot.radius_m) for who in travellers}
+        own = [(who, place) for who in travellers for place in (who.start, *(stop.at for stop in who.stops))]
+        places = [Standing(place, layer[who.robot.radius_m]) for who, place in (*more, *own)]
+        places += [
+            place for who in travellers if who.fixed for k in set(layer.values()) for place in self._around(who, k)
+        ]
         if self._known is None or not self._known.number.keys() >= set(places):
-            roadmap = with_places(self.roadmap, self.clear, places)
+            roadmap = with_places(self.roadmap, self.spaces, places)
             if self._closed:
-                roadmap = roadmap.keeping(self.doors.open_ways(roadmap.points[roadmap.edges], self._closed))
+                radii_m = roadmap.radii_m[roadmap.edge_layer]
+                roadmap = roadmap.keeping(self.doors.open_ways(roadmap.points[roadmap.edges], self._closed, radii_m))
             self._known = Network.of(roadmap)
         return self._known
 
-    def _around(self, who: Traveller) -> Iterator[Point]:
-        """Places by which others as wide get round a robot that never leaves, where there is room."""
-        radius_m = (2 * who.robot.radius_m + self.roadmap.margin_m) / math.cos(math.pi / _CORNERS) + _SPARE_M
+    def _admit(self, travellers: Sequence[Traveller]) -> None:
+        """Make layers for robots of other sizes than there were."""
+        known = {*self.roadmap.radii_m.tolist(), *self._more_m}
+        fresh = {who.robot.radius_m for who in travellers} - known
+        if fresh and self.for_more is not None:
+            self._more_m += sorted(fresh)
+            self.roadmap, self._known = self.for_more(self._more_m), None
+
+    def _around(self, who: Traveller, layer: int) -> Iterator[Standing]:
+        """Places by which others, of a layer, get round a robot that never leaves, where there is room."""
+        other_m = float(self.roadmap.radii_m[layer])
+        radius_m = (who.robot.radius_m + other_m + self.roadmap.margin_m) / math.cos(math.pi / _CORNERS) + _SPARE_M
         for k in range(_CORNERS):
             angle = 2 * math.pi * k / _CORNERS
             place = (who.start[0] + radius_m * math.cos(angle), who.start[1] + radius_m * math.sin(angle))
-            if self.clear(np.array([place, place])):
-                yield place
+            if self.spaces.clear(np.array([place, place]), other_m):
+                yield Standing(place, layer)
 
     def _shared(self, on: Network, travellers: Sequence[Traveller], ways: int) -> core.SharedWays:
         """Ways of all: in the order of the last plan, and who was not in it after the others, from far away first."""
@@ -160,12 +194,12 @@ class RoadmapPlan:
     def _by_inheritance(self, travellers: Sequence[Traveller]) -> list[Move]:
         """To first stops, as far as the horizon."""
         on = self._network_for(travellers)
-        first = {on.number[who.start]: k for k, who in reversed(list(enumerate(travellers)))}
+        first = {on.point(who, who.start): k for k, who in reversed(list(enumerate(travellers)))}
         numbers = sorted(first.values())  # without those who are only thought to be where another is
         there = [travellers[k] for k in numbers]
-        goals = [on.number[who.stops[0].at] if who.stops else None for who in there]
+        goals = [on.point(who, who.stops[0].at) if who.stops else None for who in there]
         found = on.planner.planned(
-            [on.number[who.start] for who in there],
+            [on.point(who, who.start) for who in there],
             goals,
             [who.robot.radius_m for who in there],
             margin_m=on.roadmap.margin_m,

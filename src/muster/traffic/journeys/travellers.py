@@ -81,12 +81,12 @@ class Planner(Protocol):
         """From now on these doors are closed, and the others open."""
         ...
 
-    def is_open(self, piece: Floats) -> bool:
-        """Whether a straight way (2, 2) leads through no closed door."""
+    def is_open(self, piece: Floats, radius_m: float) -> bool:
+        """Whether a straight way (2, 2) leads a robot of a radius through no closed door."""
         ...
 
     def reaches(self, travellers: Sequence[Traveller], number: int, places: Sequence[Point]) -> list[bool]:
-        """To which places a traveller gets past those who never leave."""
+        """To which places a traveller gets past those who never leave; not where it is proven that it has no way."""
         ...
 
     def __call__(self, travellers: Sequence[Traveller]) -> Iterable[Move]:

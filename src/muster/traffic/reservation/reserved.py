@@ -100,7 +100,8 @@ class ReservedTraffic:
         self._closed = frozenset(doors)
         self._planned_s = _NEVER_S
         for part in self._parts:
-            if not all(self.plan.is_open(np.array(piece)) for piece in part.pieces_ahead()):
+            radius_m = part.robot.radius_m
+            if not all(self.plan.is_open(np.array(piece), radius_m) for piece in part.pieces_ahead()):
                 part.port.halt()
                 self._forget_way(part)
 

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from muster.mission.lanes import Lanes
 from muster.mission.model import Mission
 from muster.mission.values.arrays import Bools
 from muster.motion.grid import Floats
-from muster.motion.map_world import Body, World
+from muster.motion.map_world import World
 from muster.traffic.roadmaps.lane_sections import ON_LANE_M
 
 if TYPE_CHECKING:
@@ -29,44 +30,48 @@ class RoadmapDoors:
     Parameters
     ----------
     zones
-        by id the closed polygon, and how far from it the centre of the widest robot has to be.
+        by id the closed polygon.
     lanes
-        by id the ends of a lane, (2, 2) metres, and how far from its middle the centre of a robot is that is on it.
+        by id the ends of a lane, (2, 2) metres.
     closed
         the ids of those that are closed at first.
     """
 
-    zones: Mapping[str, tuple[shapely.Polygon, float]]
-    lanes: Mapping[str, tuple[Floats, float]]
+    zones: Mapping[str, shapely.Polygon]
+    lanes: Mapping[str, Floats]
     closed: frozenset[str]
 
     @classmethod
-    def of(cls, mission: Mission, body: Body, world: World | None) -> RoadmapDoors:
-        """Those that concern a body, of which `world` has the zones."""
+    def of(cls, mission: Mission, kind: str, world: World | None) -> RoadmapDoors:
+        """Those that concern a kind of robots, of which `world` has the zones."""
         areas = () if world is None else world.areas
-        stopping = [(area.zone.id, area.polygon) for area in areas if body.kind in area.zone.forbidden_to]
-        zones = {name: (polygon, body.radius_m) for name, polygon in stopping if name is not None}
-        lanes = {} if mission.lanes is None else _lane_doors(mission.lanes, max(ON_LANE_M, body.radius_m))
+        stopping = [(area.zone.id, area.polygon) for area in areas if kind in area.zone.forbidden_to]
+        zones = {name: polygon for name, polygon in stopping if name is not None}
+        lanes = {} if mission.lanes is None else _lane_doors(mission.lanes)
         return cls(zones, lanes, frozenset() if world is None else world.closed & zones.keys())
 
-    def open_ways(self, pieces: Pieces, closed: Collection[str]) -> Bools:
-        """Which straight pieces lead into no closed zone or lane; who is in one gets out again."""
+    def open_ways(self, pieces: Pieces, closed: Collection[str], radius_m: npt.ArrayLike) -> Bools:
+        """Which straight pieces lead into no closed zone or lane; who is in one gets out again.
+
+        `radius_m` (n,) of the robot on each piece, or of all: its centre stays so far from a closed zone.
+        """
         found = np.ones(len(pieces), dtype=np.bool_)
+        radii_m = np.asarray(radius_m, dtype=np.float64)
         for door in sorted(closed):
             if door in self.zones:
-                found &= ~_into(pieces, *self.zones[door])
+                found &= ~_into(pieces, self.zones[door], radii_m)
             elif door in self.lanes:
-                found &= ~_along(pieces, *self.lanes[door])
+                found &= ~_along(pieces, self.lanes[door], np.maximum(ON_LANE_M, radii_m))
         return found
 
 
-def _lane_doors(given: Lanes, beside_m: float) -> dict[str, tuple[Floats, float]]:
+def _lane_doors(given: Lanes) -> dict[str, Floats]:
     """The lanes with an id."""
     ends = {lane.id: (given.nodes[lane.start], given.nodes[lane.end]) for lane in given.edges if lane.id}
-    return {name: (np.array(places)[:, :2], beside_m) for name, places in ends.items()}
+    return {name: np.array(places)[:, :2] for name, places in ends.items()}
 
 
-def _into(pieces: Pieces, polygon: shapely.Polygon, away_m: float) -> Bools:
+def _into(pieces: Pieces, polygon: shapely.Polygon, away_m: Floats) -> Bools:
     """Which pieces come nearer to a polygon than allowed, but for those that begin so near: robots get out again."""
     import shapely
 
@@ -74,7 +79,7 @@ def _into(pieces: Pieces, polygon: shapely.Polygon, away_m: float) -> Bools:
     return np.asarray(near & (shapely.distance(shapely.points(pieces[:, 0]), polygon) >= away_m))
 
 
-def _along(pieces: Pieces, lane: Floats, beside_m: float) -> Bools:
+def _along(pieces: Pieces, lane: Floats, beside_m: Floats) -> Bools:
     """Which pieces lead onto a lane between its ends or all along it, but for those that begin there."""
     begin, along = lane[0], lane[1] - lane[0]
     long_m = float(np.hypot(*along))

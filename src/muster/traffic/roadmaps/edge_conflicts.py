@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from muster.mission.values.arrays import Floats, Indices
 from muster.traffic.roadmaps.lane_sections import Section, held_back
@@ -13,7 +15,11 @@ _NEARER_M = 1e-9
 
 
 def conflicts(
-    points: Floats, edges: Indices, reach_m: float, sections: Sequence[Section] = ()
+    points: Floats,
+    edges: Indices,
+    reach_m: npt.ArrayLike,
+    sections: Sequence[Section] = (),
+    layer: Indices | None = None,
 ) -> tuple[Indices, Indices, Floats]:
     """For each edge u -> v the points w that a robot on it comes near to: start (m + 1,), point (l,), distance (l,).
 
@@ -28,39 +34,64 @@ def conflicts(
     edges
         (m, 2) from, to.
     reach_m
-        only points nearer than that count.
+        only points nearer than that count; (k, k) by the layers of edge and point.
     sections
         of lanes, each for one robot: an edge into one comes near to all points there, at distance 0.
+    layer
+        (n,): the layer of each point, and of the edges that begin there; without it all are of one.
     """
-    edge, point = _candidates(points, edges, reach_m)
+    reaches = np.atleast_2d(np.asarray(reach_m, dtype=np.float64))
+    layer = np.zeros(len(points), dtype=np.int64) if layer is None else layer
+    found = [
+        _near(points, edges, np.flatnonzero(layer[edges[:, 0]] == a), np.flatnonzero(layer == b), float(reaches[a, b]))
+        for a in range(len(reaches))
+        for b in range(len(reaches))
+    ]
+    held = held_back(points, edges, sections)
+    edge = np.concatenate([*(one.edge for one in found), held[:, 0]])
+    point = np.concatenate([*(one.point for one in found), held[:, 1]])
+    metres = np.concatenate([*(one.metres for one in found), np.zeros(len(held))])
+    order = np.lexsort((metres, point, edge))
+    order = order[np.append(True, (np.diff(edge[order]) != 0) | (np.diff(point[order]) != 0))[: len(order)]]
+    return np.searchsorted(edge[order], np.arange(len(edges) + 1)), point[order], metres[order]
+
+
+class _Near(NamedTuple):
+    """Edges, points that a robot on each comes near to, and how near."""
+
+    edge: Indices
+    point: Indices
+    metres: Floats
+
+
+def _near(points: Floats, edges: Indices, some: Indices, others: Indices, reach_m: float) -> _Near:
+    """For some edges, by number, which of some points, by number, are nearer than `reach_m`."""
+    edge, point = _candidates(points, edges, some, others, reach_m)
     from_u, along = points[point] - points[edges[edge, 0]], points[edges[edge, 1]] - points[edges[edge, 0]]
     squared = np.einsum("ij,ij->i", along, along)
     share = np.clip(np.einsum("ij,ij->i", from_u, along) / np.where(squared > 0, squared, 1.0), 0.0, 1.0)
     metres = np.hypot(*(from_u - share[:, np.newaxis] * along).T)
     metres[point == edges[edge, 1]] = 0.0
     near = (metres < reach_m) & (metres < np.hypot(*from_u.T) - _NEARER_M)
-    edge, point, metres = edge[near], point[near], metres[near]
-    into, there = held_back(points, edges, sections).T
-    edge, point = np.append(edge, into), np.append(point, there)
-    metres = np.append(metres, np.zeros(len(into)))
-    order = np.lexsort((metres, point, edge))
-    order = order[np.append(True, (np.diff(edge[order]) != 0) | (np.diff(point[order]) != 0))[: len(order)]]
-    return np.searchsorted(edge[order], np.arange(len(edges) + 1)), point[order], metres[order]
+    return _Near(edge[near], point[near], metres[near])
 
 
-def _candidates(points: Floats, edges: Indices, reach_m: float) -> tuple[Indices, Indices]:
+def _candidates(
+    points: Floats, edges: Indices, some: Indices, others: Indices, reach_m: float
+) -> tuple[Indices, Indices]:
     """Pairs of an edge and a point that may be within reach of it; edges of like length are looked at together."""
     from scipy.spatial import cKDTree
 
     found = [np.zeros((0, 2), dtype=np.int64)]
-    tree = cKDTree(points)
-    middles = points[edges].mean(axis=1)
-    halves = np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1) / 2
+    tree = cKDTree(points[others])
+    ends = points[edges[some]]
+    middles = ends.mean(axis=1)
+    halves = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / 2
     classes = np.ceil(np.log2(np.maximum(halves / reach_m, 0.25)) * 2).astype(np.int64)
     for one in np.unique(classes):
-        some = np.flatnonzero(classes == one)
-        far = halves[some].max() + reach_m
-        near = cKDTree(middles[some]).sparse_distance_matrix(tree, far, output_type="ndarray")
-        found.append(np.stack([some[near["i"]], near["j"]], axis=1))
+        alike = np.flatnonzero(classes == one)
+        far = halves[alike].max() + reach_m
+        near = cKDTree(middles[alike]).sparse_distance_matrix(tree, far, output_type="ndarray")
+        found.append(np.stack([some[alike[near["i"]]], others[near["j"]]], axis=1))
     pairs = np.concatenate(found)
     return pairs[:, 0], pairs[:, 1]

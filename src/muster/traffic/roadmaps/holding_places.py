@@ -12,42 +12,47 @@ _AROUND = 2.0
 """Others get past where they do so within so many times the length of the edges there, and the reach of a robot."""
 
 
-def passable(points: Floats, edges: Indices, reach_start: Indices, reach_point: Indices, reach_m: float) -> Bools:
-    """Whether others get past a robot that rests at a point: (n,).
+def passable(centres: Floats, points: Floats, edges: Indices, hits: tuple[Indices, Indices], reach_m: float) -> Bools:
+    """Whether others get past a robot that rests at a centre: (c,).
 
     They do where the nearest points that are out of its way stay joined to and fro, close by, by edges that do not come
     near to it. At the end of a way there is one such point, or none, and nobody to be held up.
 
     Parameters
     ----------
-    points, edges, reach_start, reach_point
-        of a roadmap.
+    centres
+        (c, 2) metres.
+    points, edges
+        of the layer of a roadmap by which the others pass.
+    hits
+        edges, by number, and centres that each comes near to.
     reach_m
-        at which robots are in each other's way.
+        at which such robots are in each other's way.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    n = len(points)
-    if not len(edges):
-        return np.ones(n, dtype=np.bool_)
-    around = _Neighbourhoods.of(points, edges, reach_m)
+    c = len(centres)
+    if not len(edges) or not c:
+        return np.ones(c, dtype=np.bool_)
+    around = _Neighbourhoods.of(centres, points, edges, reach_m)
     copy, edge = around.copies(edges)
     start, end = around.find(copy, edges[edge, 0]), around.find(copy, edges[edge, 1])
-    out_of_way = ~around.near[start] & ~around.near[end] & ~_is_in(edge * n + copy, _hits(reach_start, reach_point, n))
+    hit = _is_in(edge * c + copy, np.sort(hits[0] * c + hits[1]))
+    out_of_way = ~around.near[start] & ~around.near[end] & ~hit
     links = coo_array(
         (np.ones(int(out_of_way.sum()), dtype=np.int8), (start[out_of_way], end[out_of_way])), shape=(around.size,) * 2
     )
     _, part = connected_components(links, connection="strong")
     ring = np.concatenate([end[around.near[start] & ~around.near[end]], start[around.near[end] & ~around.near[start]]])
-    least, most = np.full(n, around.size), np.full(n, -1)
+    least, most = np.full(c, around.size), np.full(c, -1)
     np.minimum.at(least, around.centre[ring], part[ring])
     np.maximum.at(most, around.centre[ring], part[ring])
     return np.asarray(least >= most)
 
 
 class _Neighbourhoods:
-    """The points around each point, itself first among them: copies of parts of a roadmap, side by side.
+    """The points around each centre: copies of parts of a roadmap, side by side.
 
     `centre`, `point` (size,) are sorted; `near` (size,) says whether the point is within reach of the centre.
     """
@@ -61,16 +66,18 @@ class _Neighbourhoods:
         return len(self.centre)
 
     @classmethod
-    def of(cls, points: Floats, edges: Indices, reach_m: float) -> _Neighbourhoods:
+    def of(cls, centres: Floats, points: Floats, edges: Indices, reach_m: float) -> _Neighbourhoods:
         from scipy.spatial import cKDTree
 
         longest = np.full(len(points), reach_m)
         lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
         np.maximum.at(longest, edges.ravel(), lengths.repeat(2))
-        found: Any = cKDTree(points).query_ball_point(points, _AROUND * longest + reach_m, return_sorted=True)
-        centre = np.repeat(np.arange(len(points)), [len(some) for some in found])
+        tree = cKDTree(points)
+        far_m = _AROUND * longest[tree.query(centres)[1]] + reach_m
+        found: Any = tree.query_ball_point(centres, far_m, return_sorted=True)
+        centre = np.repeat(np.arange(len(centres)), [len(some) for some in found])
         point = np.concatenate(found).astype(np.int64)
-        near = np.linalg.norm(points[centre] - points[point], axis=1) < reach_m
+        near = np.linalg.norm(centres[centre] - points[point], axis=1) < reach_m
         return cls(centre, point, near, len(points))
 
     def copies(self, edges: Indices) -> tuple[Indices, Indices]:
@@ -87,11 +94,6 @@ class _Neighbourhoods:
     def find(self, centre: Indices, point: Indices) -> Indices:
         """The numbers of points around centres."""
         return np.searchsorted(self._keys, centre * self._n + point)
-
-
-def _hits(reach_start: Indices, reach_point: Indices, n: int) -> Indices:
-    """Each edge with each point that it comes near to, as edge * n + point, sorted."""
-    return np.sort(np.repeat(np.arange(len(reach_start) - 1), np.diff(reach_start)) * n + reach_point)
 
 
 def _is_in(keys: Indices, sorted_keys: Indices) -> Bools:

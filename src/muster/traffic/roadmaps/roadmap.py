@@ -1,14 +1,17 @@
 """The roadmap: points and straight lanes that robots share, and which of them are in each other's way.
 
-A robot stands at a point or moves along an edge. Two robots of radii r_i and r_j are in each other's way where their
-centres come nearer than r_i + r_j + margin. Which points an edge comes near to is worked out once, for two of the
-widest robots, with the distances, as [hoenig2018] annotates roadmaps; for two smaller ones the distances tell.
+A robot stands at a point or moves along an edge. There is a layer of points and edges for each size of robots, made of
+their own free space: no edge leads from one layer to another. Two robots of radii r_i and r_j are in each other's way
+where their centres come nearer than r_i + r_j + margin, on whichever layers they are. Which points an edge comes near
+to is worked out once, with the distances, as [hoenig2018] annotates roadmaps.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -35,6 +38,19 @@ _MOST_POINTS = 40_000
 """About as many points has a roadmap of open space at most: there the lattice is made coarser."""
 
 
+class Layer(NamedTuple):
+    """Points and edges for robots up to a radius, with the greatest speeds (m,) and sections of lanes if it has such.
+
+    `names` are those of the nodes of given lanes, its first points.
+    """
+
+    radius_m: float
+    made: Network
+    speed_mps: Floats | None = None
+    sections: tuple[Section, ...] = ()
+    names: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, eq=False)
 class Roadmap:
     """Points, directed straight edges, and the conflicts between them; map frame.
@@ -44,32 +60,35 @@ class Roadmap:
     points
         (n, 2) metres.
     narrow
-        (n,): whether the room is for one there; everywhere on given lanes.
+        (n,): whether the room is for one of its layer there; everywhere on given lanes.
+    layer
+        (n,): for the robots of which size a point is, by its number among `radii_m`.
     edges
         (m, 2): from, to; numbers of points.
     clearance_m
-        (m,): a robot of `radius_m` keeps at least so much more from every obstacle.
-    radius_m, margin_m
-        of the widest robot; what two robots keep between them beyond touching.
+        (m,): the widest robot of its layer keeps at least so much more from every obstacle.
+    radii_m, margin_m
+        (k,) of the widest robot of each layer, in order; what two robots keep between them beyond touching.
     reach_start, reach_point, reach_m
         (m + 1,), (l,), (l,): the points that a robot on edge k comes near to, by number, are
         `reach_point[reach_start[k]:reach_start[k + 1]]`; `reach_m` is how near its centre comes. The end of the edge is
         one of them, at 0. Not among them are its beginning, and the points from which it only moves away.
     places
-        (k,): for each place that was to be joined its point; -1 where no way leads there.
+        for each place that was to be joined its point, layer by layer; -1 where no way leads there.
     speed_mps
         (m,): the greatest speed on an edge; inf where robots alone decide.
     names
-        of the first points, the nodes of given lanes; empty where the roadmap was made from free space.
+        of the first points of each layer, the nodes of given lanes; empty where it was made from free space.
     sections
         of lanes with a capacity, each for one robot: edges into one are said to come near to all points there.
     """
 
     points: Floats
     narrow: Bools
+    layer: Indices
     edges: Indices
     clearance_m: Floats
-    radius_m: float
+    radii_m: Floats
     margin_m: float
     reach_start: Indices
     reach_point: Indices
@@ -93,10 +112,25 @@ class Roadmap:
             speed_mps=self.speed_mps[edges],
         )
 
+    @cached_property
+    def reaches_m(self) -> Floats:
+        """(k, k): two of the widest robots of two layers whose centres are nearer are in each other's way."""
+        return np.asarray(self.radii_m[:, np.newaxis] + self.radii_m + self.margin_m)
+
     @property
     def reach(self) -> float:
         """Metres: two of the widest robots whose centres are nearer are in each other's way."""
-        return 2 * self.radius_m + self.margin_m
+        return float(self.reaches_m.max())
+
+    def layer_for(self, radius_m: float) -> int:
+        """The number of the layer of robots of a radius; -1 where all layers are for smaller ones."""
+        k = int(np.searchsorted(self.radii_m, radius_m * (1 - _SAME)))
+        return k if k < len(self.radii_m) else -1
+
+    @cached_property
+    def edge_layer(self) -> Indices:
+        """(m,)."""
+        return self.layer[self.edges[:, 0]]
 
     @cached_property
     def lengths_m(self) -> Floats:
@@ -116,24 +150,48 @@ class Roadmap:
         return ~np.isin(start * n + end, end * n + start)
 
     @cached_property
-    def passable(self) -> Bools:
-        """(n,): whether others get past a robot that rests at a point: no passage for one leads through it."""
+    def passed(self) -> Bools:
+        """(k, n): whether robots of each layer get past one that rests at a point."""
         from muster.traffic.roadmaps.holding_places import passable
 
-        return passable(self.points, self.edges, self.reach_start, self.reach_point, self.reach)
+        found = np.ones((len(self.radii_m), len(self.points)), dtype=np.bool_)
+        edge_of, local = np.repeat(np.arange(len(self.edges)), np.diff(self.reach_start)), self._number_in_layer
+        for (a, b), reach_m in np.ndenumerate(self.reaches_m):
+            centres, others = self.points[self.layer == a], self.points[self.layer == b]
+            own = np.flatnonzero(self.edge_layer == b)
+            near = (self.edge_layer[edge_of] == b) & (self.layer[self.reach_point] == a)
+            hits = np.searchsorted(own, edge_of[near]), local[self.reach_point[near]]
+            found[b, self.layer == a] = passable(centres, others, local[self.edges[own]], hits, float(reach_m))
+        return found
+
+    @cached_property
+    def _number_in_layer(self) -> Indices:
+        """(n,): the number of each point among those of its layer."""
+        found = np.zeros(len(self.points), dtype=np.int64)
+        for k in range(len(self.radii_m)):
+            found[self.layer == k] = np.arange(np.count_nonzero(self.layer == k))
+        return found
+
+    @property
+    def passable(self) -> Bools:
+        """(n,): whether others of its layer get past a robot that rests at a point: no passage for one is there."""
+        return self.passed[self.layer, np.arange(len(self.points))]
 
     @cached_property
     def holding(self) -> Bools:
-        """(n,): whether a robot may rest at a point: others get past it, and it keeps nobody from another place."""
+        """(n,): whether a robot may rest at a point: all others get past it, and it keeps nobody from another place."""
         from scipy.spatial import cKDTree
 
-        places = np.unique(self.places[self.places >= 0])
-        if not len(places):
-            return self.passable
-        near = cKDTree(self.points[places]).query_ball_point(self.points, self.reach * (1 - _SAME), return_length=True)
-        own = np.zeros(len(self.points), dtype=np.int64)
-        own[places] = 1
-        return np.asarray(self.passable & (near <= own))
+        places, free = np.unique(self.places[self.places >= 0]), np.array(self.passed.all(axis=0))
+        is_place = np.isin(np.arange(len(self.points)), places)
+        for (a, b), reach_m in np.ndenumerate(self.reaches_m):
+            those, own = places[self.layer[places] == b], self.layer == a
+            if len(those):
+                tree, here = cKDTree(self.points[those]), self.points[own]
+                near = tree.query_ball_point(here, reach_m * (1 - _SAME), return_length=True)
+                at_it = tree.query_ball_point(here, _SAME, return_length=True)
+                free[own] &= near <= np.where(is_place[own], at_it, 0)
+        return free
 
     @cached_property
     def out_start(self) -> Indices:
@@ -144,58 +202,27 @@ class Roadmap:
         """The points that a robot on an edge comes near to."""
         return self.reach_point[self.reach_start[edge] : self.reach_start[edge + 1]]
 
-    def point_at(self, x: float, y: float) -> int:
-        """The nearest point that an edge leads to or from; of a place that was joined its own. Metres, map frame.
+    def point_at(self, x: float, y: float, layer: int = -1) -> int:
+        """The nearest point of a layer that an edge leads to or from; of a place that was joined its own.
+
+        Metres, map frame; the layer is that of the widest robots by default.
 
         Raises
         ------
         ParameterError
-            for a roadmap without edges.
+            for a layer without edges.
         """
-        if self._tree is None:
+        joined = np.unique(self.edges[self.edge_layer == layer % len(self.radii_m)])
+        if not len(joined):
             raise ParameterError("roadmap: no edges; expected some")
-        _, k = self._tree.query((x, y))
-        return int(self._joined[k])
-
-    @cached_property
-    def _joined(self) -> Indices:
-        return np.unique(self.edges)
-
-    @cached_property
-    def _tree(self):  # type: ignore[no-untyped-def]
-        from scipy.spatial import cKDTree
-
-        return cKDTree(self.points[self._joined]) if len(self._joined) else None
+        return int(joined[np.argmin(np.hypot(*(self.points[joined] - (x, y)).T))])
 
     @classmethod
     def of(
         cls, space: Space | None, radius_m: float, places: npt.ArrayLike = (), *, margin_m: float = MARGIN_M
     ) -> Roadmap:
-        """The roadmap of a free space, or of the open area around some places.
-
-        Parameters
-        ----------
-        space
-            free for the centre of the widest robot: `World.free_space(radius_m, "ground", three_d=False)`; None for
-            the open plane.
-        radius_m
-            of the widest robot; greater than 0.
-        places
-            (k, 2) or (k, 3): starts of robots and places of tasks, metres in the map frame; each gets a point of its
-            own.
-
-        Raises
-        ------
-        ParameterError
-            for a space with heights, a radius or margin that is not a finite number above 0, or neither space nor
-            places.
-        """
-        apart_m, points = _checked(radius_m, margin_m, places)
-        if space is None and len(points):
-            space = _open(points, apart_m)
-        if not isinstance(space, GridSpace | PolygonSpace):
-            raise ParameterError("space: with heights or empty; expected the plane, or None and some places")
-        return cls.joined(network(space, apart_m, points, _MOST_POINTS), radius_m, margin_m)
+        """The roadmap of the free space of one size of robots: see `layer_of_space`."""
+        return cls.joined([layer_of_space(space, radius_m, places, margin_m=margin_m)], margin_m)
 
     @classmethod
     def of_lanes(
@@ -207,46 +234,89 @@ class Roadmap:
         space: Space | None = None,
         margin_m: float = MARGIN_M,
     ) -> Roadmap:
-        """The roadmap of given lanes, without those that are too narrow or lead through an obstacle; else as `of`.
-
-        Places are joined to the nearest point that a straight way leads to; the first points are the nodes, in order.
-        """
-        apart_m, points = _checked(radius_m, margin_m, places)
-        if not isinstance(space, GridSpace | PolygonSpace | None):
-            raise ParameterError("space: with heights; expected the plane, or None")
-        made, speeds, sections = lane_network(lanes, radius_m, apart_m, points, space, most_points=_MOST_POINTS)
-        return cls.joined(made, radius_m, margin_m, speed_mps=speeds, names=tuple(lanes.nodes), sections=sections)
+        """The roadmap of given lanes for one size of robots: see `layer_of_lanes`."""
+        return cls.joined([layer_of_lanes(lanes, radius_m, places, space=space, margin_m=margin_m)], margin_m)
 
     @classmethod
-    def joined(
-        cls,
-        made: Network,
-        radius_m: float,
-        margin_m: float,
-        *,
-        speed_mps: Floats | None = None,
-        names: tuple[str, ...] = (),
-        sections: tuple[Section, ...] = (),
-    ) -> Roadmap:
-        """The roadmap of a network of points and directed edges, with its conflicts."""
-        order = np.lexsort(made.edges.T[::-1])
-        edges = made.edges[order]
-        start, point, metres = conflicts(made.points, edges, 2 * radius_m + margin_m, sections)
+    def joined(cls, layers: Sequence[Layer], margin_m: float) -> Roadmap:
+        """The roadmap of some layers, of the narrowest robots first, with the conflicts of their edges."""
+        made = [layer.made for layer in layers]
+        counts = [len(one.points) for one in made]
+        first = np.cumsum([0, *counts[:-1]])
+        points, layer = np.concatenate([one.points for one in made]), np.repeat(np.arange(len(layers)), counts)
+        edges = np.concatenate([one.edges + k for one, k in zip(made, first, strict=True)])
+        speeds = [np.full(len(one.made.edges), np.inf) if one.speed_mps is None else one.speed_mps for one in layers]
+        order = np.lexsort(edges.T[::-1])
+        edges = edges[order]
+        radii_m = np.array([layer.radius_m for layer in layers])
+        sections = tuple(section for one in layers for section in one.sections)
+        reaches_m = radii_m[:, np.newaxis] + radii_m + margin_m
+        start, point, metres = conflicts(points, edges, reaches_m, sections, layer)
         return cls(
-            points=made.points,
-            narrow=made.narrow,
+            points=points,
+            narrow=np.concatenate([one.narrow for one in made]),
+            layer=layer,
             edges=edges,
-            clearance_m=made.clearance_m[order],
-            radius_m=radius_m,
+            clearance_m=np.concatenate([one.clearance_m for one in made])[order],
+            radii_m=radii_m,
             margin_m=margin_m,
             reach_start=start,
             reach_point=point,
             reach_m=metres,
-            places=made.places,
-            speed_mps=np.full(len(edges), np.inf) if speed_mps is None else speed_mps[order],
-            names=names,
+            places=np.concatenate(
+                [np.where(one.places < 0, -1, one.places + k) for one, k in zip(made, first, strict=True)]
+            ),
+            speed_mps=np.concatenate(speeds)[order],
+            names=layers[0].names,
             sections=sections,
         )
+
+
+def layer_of_space(
+    space: Space | None, radius_m: float, places: npt.ArrayLike = (), *, margin_m: float = MARGIN_M
+) -> Layer:
+    """The layer of a free space, or of the open area around some places.
+
+    Parameters
+    ----------
+    space
+        free for the centre of the widest of these robots: `World.free_space(radius_m, "ground", three_d=False)`; None
+        for the open plane.
+    radius_m
+        of the widest; greater than 0.
+    places
+        (k, 2) or (k, 3): starts of robots and places of tasks, metres in the map frame; each gets a point of its own.
+
+    Raises
+    ------
+    ParameterError
+        for a space with heights, a radius or margin that is not a finite number above 0, or neither space nor places.
+    """
+    apart_m, points = _checked(radius_m, margin_m, places)
+    if space is None and len(points):
+        space = _open(points, apart_m)
+    if not isinstance(space, GridSpace | PolygonSpace):
+        raise ParameterError("space: with heights or empty; expected the plane, or None and some places")
+    return Layer(radius_m, network(space, apart_m, points, _MOST_POINTS))
+
+
+def layer_of_lanes(
+    lanes: Lanes,
+    radius_m: float,
+    places: npt.ArrayLike = (),
+    *,
+    space: Space | None = None,
+    margin_m: float = MARGIN_M,
+) -> Layer:
+    """The layer of given lanes, without those that are too narrow or lead through an obstacle; else as of a space.
+
+    Places are joined to the nearest point that a straight way leads to; the first points are the nodes, in order.
+    """
+    apart_m, points = _checked(radius_m, margin_m, places)
+    if not isinstance(space, GridSpace | PolygonSpace | None):
+        raise ParameterError("space: with heights; expected the plane, or None")
+    made, speeds, sections = lane_network(lanes, radius_m, apart_m, points, space, most_points=_MOST_POINTS)
+    return Layer(radius_m, made, speeds, sections, tuple(lanes.nodes))
 
 
 def _checked(radius_m: float, margin_m: float, places: npt.ArrayLike) -> tuple[float, Floats]:
