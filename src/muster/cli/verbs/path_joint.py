@@ -17,38 +17,9 @@ from muster.mission.system.clock import ProcessorClock
 from muster.mission.values.arrays import Floats
 
 if TYPE_CHECKING:
-    from muster import core
+    from muster.traffic.joint_instance import JointInstance
     from muster.cli.options.common import MissionFile
     from muster.traffic.joint_paths import JointPaths
-
-
-@dataclass(frozen=True, eq=False)
-class Instance:
-    """A question for joint paths.
-
-    Parameters
-    ----------
-    name : str
-        What is shown of it.
-    graph : core.DirectedGraph
-        The graph whose edges robots take.
-    edges : list[tuple[int, int]]
-        The vertices that each edge joins.
-    places : Floats
-        (n, 2), where each vertex is: x and y, as cells of a map or metres of a mission.
-    robots : list[str]
-        The name of each robot.
-    starts, goals : list[int]
-        The vertex of each robot.
-    """
-
-    name: str
-    graph: core.DirectedGraph
-    edges: list[tuple[int, int]]
-    places: Floats
-    robots: list[str]
-    starts: list[int]
-    goals: list[int]
 
 
 @dataclass(frozen=True)
@@ -60,7 +31,7 @@ class Limits:
     seed: int
 
 
-def run(instance: Instance, limits: Limits, form: str, output: File | None, plot: File | None) -> int:
+def run(instance: JointInstance, limits: Limits, form: str, output: File | None, plot: File | None) -> int:
     """Find joint paths, judge them, print their figures, and write them."""
     from muster.traffic.joint_path_faults import graph_faults
     from muster.traffic.joint_paths import NoJointPaths, Parameters, joint_paths
@@ -103,7 +74,7 @@ def run(instance: Instance, limits: Limits, form: str, output: File | None, plot
     return DONE
 
 
-def of_map(file: File, scenario: File | None, agents: int | None) -> Instance:
+def of_map(file: File, scenario: File | None, agents: int | None) -> JointInstance:
     """Return the first robots of a scenario on a MovingAI map.
 
     Raises
@@ -113,6 +84,7 @@ def of_map(file: File, scenario: File | None, agents: int | None) -> Instance:
     ParameterError
         where no scenario is given, or it has fewer robots.
     """
+    from muster.traffic.joint_instance import JointInstance
     from muster.traffic.joint_paths import grid_graph
     from muster.traffic.movingai import read_map, read_scenario, require_fitting
 
@@ -131,10 +103,10 @@ def of_map(file: File, scenario: File | None, agents: int | None) -> Instance:
     starts, goals = ([int(numbers[getattr(one, side)]) for one in ends[:count]] for side in ("start", "goal"))
     both_ways = [*edges, *((b, a) for a, b in edges)]
     names = [str(k) for k in range(count)]
-    return Instance(file.name, graph, both_ways, rows[:, ::-1].astype(np.float64), names, starts, goals)
+    return JointInstance(file.name, graph, both_ways, rows[:, ::-1].astype(np.float64), names, starts, goals)
 
 
-def of_mission(mission: MissionFile, goals: Sequence[str], agents: int | None, *, verbose: bool) -> Instance:
+def of_mission(mission: MissionFile, goals: Sequence[str], agents: int | None, *, verbose: bool) -> JointInstance:
     """Return robots of a mission on its roadmap: each from the point nearest to its place to that nearest to its goal.
 
     Raises
@@ -142,8 +114,8 @@ def of_mission(mission: MissionFile, goals: Sequence[str], agents: int | None, *
     ParameterError
         where no goals are given, or two robots have the same point.
     """
-    from muster import core
     from muster.cli.verbs.path_together import goals_of
+    from muster.traffic.joint_instance import JointInstance
     from muster.traffic.mission_roadmap import MissionRoadmap
 
     loaded = mission.load(verbose=verbose)
@@ -152,15 +124,10 @@ def of_mission(mission: MissionFile, goals: Sequence[str], agents: int | None, *
     wanted = goals_of(loaded, tuple(goals))
     roadmap = MissionRoadmap.of(loaded).roadmap
     names = list(wanted)[: _count(agents, len(wanted), "--together names")]
-    tails, heads = roadmap.edges.T
-    order = np.argsort(tails, kind="stable")
-    first = np.concatenate([[0], np.cumsum(np.bincount(tails, minlength=len(roadmap.points)))])
-    graph = core.DirectedGraph(first.tolist(), heads[order].tolist(), [1.0] * len(heads))
     positions = {robot.id: robot.position[:2] for robot in loaded.robots}
     starts = _nearest(roadmap.points, "start", {name: positions[name] for name in names})
     ends = _nearest(roadmap.points, "goal", {name: wanted[name] for name in names})
-    edges = [(int(a), int(b)) for a, b in roadmap.edges.tolist()]
-    return Instance(loaded.name, graph, edges, np.asarray(roadmap.points), names, starts, ends)
+    return JointInstance.of_edges(loaded.name, np.asarray(roadmap.points), roadmap.edges, names, starts, ends)
 
 
 def _nearest(points: Floats, side: str, places: dict[str, Any]) -> list[int]:
@@ -184,7 +151,7 @@ def _count(agents: int | None, there: int, what: str) -> int:
     return there if agents is None else agents
 
 
-def _figures(instance: Instance, found: JointPaths, cpu_s: float, seed: int) -> dict[str, Any]:
+def _figures(instance: JointInstance, found: JointPaths, cpu_s: float, seed: int) -> dict[str, Any]:
     from muster.traffic.joint_paths import costs
 
     cost = costs(found.vertices, instance.goals)
@@ -201,7 +168,7 @@ def _figures(instance: Instance, found: JointPaths, cpu_s: float, seed: int) -> 
     }
 
 
-def _print(instance: Instance, figures: dict[str, Any]) -> None:
+def _print(instance: JointInstance, figures: dict[str, Any]) -> None:
     from muster.cli.tables.table import print_table
     from muster.mission.texts.counting import counted
 
@@ -212,7 +179,7 @@ def _print(instance: Instance, figures: dict[str, Any]) -> None:
     click.echo(f"{instance.name}: {robots}, seed {figures['seed']}; judged, no conflict")
 
 
-def _write(file: File, instance: Instance, found: JointPaths, figures: dict[str, Any]) -> None:
+def _write(file: File, instance: JointInstance, found: JointPaths, figures: dict[str, Any]) -> None:
     """Write the paths as JSON, or as the text that LaCAM and others write: a line for each step."""
     cells = instance.places[found.vertices]
     if file.suffix.lower() == ".json":
