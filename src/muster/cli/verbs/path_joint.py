@@ -17,8 +17,8 @@ from muster.mission.system.clock import ProcessorClock
 from muster.mission.values.arrays import Floats
 
 if TYPE_CHECKING:
-    from muster.traffic.joint_instance import JointInstance
     from muster.cli.options.common import MissionFile
+    from muster.traffic.joint_instance import JointInstance
     from muster.traffic.joint_paths import JointPaths
 
 
