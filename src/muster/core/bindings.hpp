@@ -19,6 +19,7 @@ void bind_team(nanobind::module_& m);
 void bind_distances(nanobind::module_& m);
 void bind_grid(nanobind::module_& m);
 void bind_ways(nanobind::module_& m);
+void bind_lane_ways(nanobind::module_& m);
 void bind_air(nanobind::module_& m);
 void bind_tree(nanobind::module_& m);
 void bind_voxels(nanobind::module_& m);

@@ -23,6 +23,7 @@ NB_MODULE(_core, m) {
   muster::bind_distances(m);
   muster::bind_grid(m);
   muster::bind_ways(m);
+  muster::bind_lane_ways(m);
   muster::bind_air(m);
   muster::bind_tree(m);
   muster::bind_voxels(m);

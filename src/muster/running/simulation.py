@@ -92,7 +92,7 @@ class Simulation:
         if ground is not None:
             mission, robot_paths = ground.mission, ground.paths
         else:
-            robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
+            robot_paths = RobotPaths.of(mission) if mission.has_paths else None
             if begun is None:  # later each robot stands anywhere, and a leg is checked when it is sent
                 require_open_ways(mission, plan)
         travel, seed = travel_of(mission, robot_paths), request.seed

@@ -367,7 +367,8 @@ def _lasting(task: Task, duration_s: float) -> Task:
 def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
     """The mission of which the problem is made. Travel is handed to the problem apart."""
     mission, crew = rest.mission, [snapshot.robot.id for snapshot in rest.crew]
-    rules = replace(mission.rules, travel="euclidean", capacity_reserve=0.0, return_to_start=False)
+    travel = "euclidean" if mission.driven_lanes is None else "lanes"
+    rules = replace(mission.rules, travel=travel, capacity_reserve=0.0, return_to_start=False)
     scores = mission.suitability
     return mission.at_once(
         rules=rules,

@@ -104,6 +104,8 @@ def _dimensions(mission: MissionData) -> Iterator[Fault]:
 def _travel(mission: MissionData) -> Iterator[Fault]:
     if mission.travel_rule == "map" and mission.map is None:
         yield Fault(("rules", "travel"), shown("map"), "a mission with a map, or another rule")
+    if mission.travel_rule == "lanes" and mission.lanes is None:
+        yield Fault(("rules", "travel"), shown("lanes"), "a mission with lanes, or another rule")
     if mission.travel_rule != "matrix":
         if mission.travel is not None:
             yield Fault(("travel",), "tables that are not used", "rules.travel: matrix beside them")
