@@ -1092,21 +1092,41 @@ class DirectedGraph:
         What it costs to come to a vertex from each; infinite where there is no way.
         """
 
+class TrafficGuidance:
+    """Ways of robots to their goals that avoid those who come the other way."""
+
+    def __init__(self, graph: DirectedGraph, starts: Sequence[int], goals: Sequence[int], seed: int) -> None:
+        """
+        Raises ValueError where starts or goals are no vertices, or not of the same number.
+        """
+
+    def advance(self, steps: int) -> None:
+        """Two steps a robot."""
+
+    @property
+    def finished(self) -> bool: ...
+
+    @property
+    def connected(self) -> bool:
+        """Whether each robot alone comes to its goal, so far."""
+
+    @property
+    def least_sum(self) -> int:
+        """
+        The sum of the numbers of steps on the shortest ways of the robots; once finished.
+        """
+
 class Lacam:
     """
     Search over configurations of robots that take a step on a graph at once.
     """
 
-    def __init__(self, graph: DirectedGraph, starts: Sequence[int], goals: Sequence[int], *, samples: int = 1, seed: int = 0, anytime: bool = False) -> None:
+    def __init__(self, guidance: TrafficGuidance, *, samples: int = 1, seed: int = 0, anytime: bool = False) -> None:
         """
-        Raises ValueError where starts or goals are no vertices, or not of the same number.
+        Raises ValueError where the guidance is not finished, or a robot alone has no way.
         """
 
     def advance(self, expansions: int) -> None: ...
-
-    @property
-    def connected(self) -> bool:
-        """Whether each robot alone comes to its goal."""
 
     @property
     def state(self) -> str:
@@ -1124,14 +1144,16 @@ class Lacam:
         Steps in which robots do not rest at their goals, of the best solution.
         """
 
-    def solution(self) -> list[list[int]]:
-        """The vertex of each robot, step by step. Only after it is solved."""
+    def solution(self) -> NDArray[numpy.int64]:
+        """
+        The vertex of each robot, (steps + 1, robots). Raises ValueError before it is solved.
+        """
 
 class JointRefinement:
     """Large neighbourhood search over the paths of robots."""
 
-    def __init__(self, graph: DirectedGraph, steps: Sequence[Sequence[int]], seed: int) -> None:
-        """Raises ValueError where `steps` are no paths."""
+    def __init__(self, guidance: TrafficGuidance, steps: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', writable=False)], seed: int) -> None:
+        """Raises ValueError where `steps` are no paths to the goals."""
 
     def advance(self, neighbourhoods: int) -> None: ...
 
@@ -1139,8 +1161,8 @@ class JointRefinement:
     def cost(self) -> int:
         """Steps until each robot rests at its goal for good, summed up."""
 
-    def solution(self) -> list[list[int]]:
-        """The vertex of each robot, step by step."""
+    def solution(self) -> NDArray[numpy.int64]:
+        """The vertex of each robot, (steps + 1, robots)."""
 
 class MovePlanner:
     """
