@@ -846,7 +846,7 @@ class CrowdWorld:
 
     def recover(self, robot: int) -> None: ...
 
-    def place(self, robot: int, position: tuple[float, float, float]) -> None:
+    def place(self, robot: int, position: Sequence[float]) -> None:
         """Puts a robot elsewhere: it stands there, without an order."""
 
     def slow(self, robot: int, factor: float) -> None: ...
