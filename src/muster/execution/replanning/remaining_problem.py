@@ -384,7 +384,6 @@ def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
     return mission.at_once(
         rules=rules,
         map=None,
-        lanes=None,
         travel=None,
         travel_tables={},
         suitability=None if scores is None else {kind: {**row, SO_FAR: 1.0} for kind, row in scores.items()},
