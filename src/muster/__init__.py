@@ -175,7 +175,6 @@ _MOVED = {
     "muster.report.film": "muster_physics.film",
     "muster.server": "muster_control",
     "muster.simulation.physics": "muster_physics",
-    "muster.traffic.movingai": "muster_studies.instances.movingai",
 }
 """The new names of packages that have moved, with all that is in them, and of documented modules that moved again.
 

@@ -172,9 +172,16 @@ class PhysicsWorld(WorldBase):
         done = self._control.carry_out(Commands(rates, rows[:, 3]), self._count, self._force_shares(len(rows)))
         after, lags = done.poses, done.lags
         lags *= self._carried
-        heights = self.positions[:, 2] + self._dt_s * rows[:, 2]
+        heights = self._crowd.positions()[:, 2] + self._dt_s * rows[:, 2]
         after[:, 2] = np.where(self._carried[:, 2] > 0, after[:, 2] - self._standing_m, heights)
         return self._crowd.carried_out(after, lags, done.counted, STILL_MPS)
+
+    def _put(self, number: int, place: tuple[float, ...]) -> None:
+        """See `WorldBase`; the body stands where it is put, upright."""
+        super()._put(number, place)
+        robot = self._robots[number]
+        placed = self._placed(robot, np.array(place), float(self.headings[number]), 0)
+        self.simulated.put(number, placed.position, float(self.headings[number]))
 
     def _force_shares(self, count: int) -> Floats | None:
         """Shares of commanded force that the motors of `count` robots give in this step; None: all of it."""
@@ -191,7 +198,9 @@ class PhysicsWorld(WorldBase):
         self._built_of = built_of
         self._wall_sets = []
         walls = [self._walls_of(robot) for robot in self._robots]
-        robots = [self._placed(*one) for one in zip(self._robots, self.positions, self.headings, walls, strict=True)]
+        robots = [
+            self._placed(*one) for one in zip(self._robots, self._crowd.positions(), self.headings, walls, strict=True)
+        ]
         scenery = Scenery(self._map, self._tags, self.ground_m)
         simulated = SimulatedModel(robots, self._wall_sets, scenery, self._dt_s / self._count)
         if before is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -136,6 +137,14 @@ class SimulatedModel:
             self.rotors.speeds[k], self.rotors.disturbances[k], self.rotors.wind[k] = np.split(
                 np.asarray(row["rotors"]), [MOST_ROTORS, MOST_ROTORS + 6]
             )
+        mujoco.mj_step1(self.model, self.data)
+
+    def put(self, robot: int, position: tuple[float, float, float], heading: float) -> None:
+        """Let a robot stand still at a place, metres, with a heading, radians."""
+        self.data.qpos[self.places[robot]] = [*position, math.cos(heading / 2), 0.0, 0.0, math.sin(heading / 2)]
+        self.data.qvel[self.freedoms[robot]] = 0.0
+        for _, freedom in self._wheels[robot]:
+            self.data.qvel[freedom] = 0.0
         mujoco.mj_step1(self.model, self.data)
 
     def _set_published_inertias(self) -> None:

@@ -9,11 +9,12 @@ from muster.execution.robots.task_motion import path_length, place, straight, wo
 from muster.mission.model import Action, Camera
 from muster.motion.actions import Impossible, plan
 from muster.motion.leg_times import LegTimes
+from muster.motion.port import Waypoint
 
 
-def around(robot, start, goal):
+def around(robot, start, goal, *, at_work=False):
     """Every way makes an angle."""
-    return [(start[0], goal[1], start[2]), goal]
+    return [Waypoint((start[0], goal[1], start[2])), Waypoint(goal)]
 
 
 def work(task, robot, way=straight):
@@ -82,9 +83,9 @@ def test_headings_are_kept():
 
 def test_without_a_way_from_one_way_point_to_the_next_it_is_impossible():
     delivery = Task(id="t", position=(0, 0), action=Action(name="delivery", pickup=(3, 0)))
-    found = work(delivery, Robot(id="r", position=(0, 0)), lambda robot, start, goal: None)
+    found = work(delivery, Robot(id="r", position=(0, 0)), lambda robot, start, goal, *, at_work: None)
     assert found == Impossible("unreachable: there is no way from (3, 0, 0) to (0, 0, 0)")
 
 
 def test_the_straight_way_is_the_goal():
-    assert straight(Robot(id="r", position=(0, 0)), (0, 0, 0), (3, 4, 0)) == ((3, 4, 0),)
+    assert straight(Robot(id="r", position=(0, 0)), (0, 0, 0), (3, 4, 0)) == (Waypoint((3, 4, 0)),)

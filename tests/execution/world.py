@@ -5,7 +5,7 @@ import math
 from muster.execution.robots.task_motion import place
 from muster.motion.port import Telemetry
 
-FAILURES = ("robot_fails", "robot_silent", "robot_returns", "robot_joins")
+FAILURES = ("robot_fails", "robot_removed", "robot_moved", "robot_silent", "robot_returns", "robot_joins")
 
 
 class Point:
@@ -29,6 +29,10 @@ class Point:
 
     def cancel(self):
         return self.send([])
+
+    def put(self, position):
+        """Somebody puts it elsewhere: it stands there."""
+        self.position, self.waypoints = place(position), []
 
     def telemetry(self):
         return self.last
@@ -79,9 +83,12 @@ class World:
             event = self._script.pop(0)
             if event.robot_joins is not None:
                 self.ports[event.robot_joins.id] = Point(event.robot_joins, self.now - dt)
-            for name in filter(None, (event.robot_fails, event.robot_silent, event.robot_returns)):
+            if event.robot_moved is not None:
+                self.ports[event.robot_moved.robot].put(event.robot_moved.position)
+            down = event.robot_fails or event.robot_removed
+            for name in filter(None, (down, event.robot_silent, event.robot_returns)):
                 if name in self.ports:
-                    self.ports[name].broken = event.robot_fails is not None
+                    self.ports[name].broken = down is not None
                     self.ports[name].mute = event.robot_silent is not None
         for point in self.ports.values():
             point.step(dt)

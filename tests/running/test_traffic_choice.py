@@ -35,7 +35,8 @@ def test_open_space_is_free_unless_lanes_are_given(hall):
     assert manager_for("auto", hall) is None
     assert manager_for("reserve", hall) is not None
     lanes = Lanes(nodes={"a": (-5.0, 0.0), "b": (5.0, 0.0)}, edges=(Lane(start="a", end="b", both_ways=True),))
-    assert manager_for("auto", replace(hall, lanes=lanes)) is not None
+    assert manager_for("auto", replace(hall, lanes=lanes)) is None  # whose rules say that travel is straight
+    assert manager_for("auto", replace(hall, lanes=lanes, rules=replace(hall.rules, travel=None))) is not None
 
 
 def test_given_lanes_lead_a_single_robot_too(hall):
@@ -48,7 +49,7 @@ def test_given_lanes_lead_a_single_robot_too(hall):
     mission = replace(hall, robots=(robot,), tasks=tasks, lanes=lanes, rules=rules)
     report = simulate(mission, solve(mission, "greedy"))
     assert list(report.tasks_done) == ["c"]
-    assert "no way leads there" in dict(report.tasks_lost)["a"]
+    assert "no lanes lead from (0, 0) to (-5, 0)" in dict(report.tasks_lost)["a"]
 
 
 def test_a_small_robot_passes_a_door_that_is_too_narrow_for_the_wide_one():

@@ -1,5 +1,6 @@
 """A team without a map does all that can be done, touches nothing, and says what its map proves to be out of reach."""
 
+import json
 from dataclasses import replace
 from itertools import pairwise
 
@@ -25,10 +26,11 @@ from muster import (
 from muster.mission.model import Event, Work
 from muster.motion.map_world import Body, World
 from muster.motion.maps.occupancy_rules import read_grid
+from muster.running.begun import Begun
 from muster.running.run_request import RunRequest
 from muster.state import MissionState, checkpoint_of, restored
 from muster.state.explored_map import FREE
-from muster_studies.unknown.scenes import building, random_world
+from muster_studies.unknown.scenes import building, random_space, random_world
 from muster_studies.unknown.study import carried_out
 
 NO_FLY = Zone(polygon=((1.0, 5.0), (3.0, 5.0), (3.0, 6.0), (1.0, 6.0)), forbidden_to=("air",))
@@ -111,7 +113,7 @@ def test_the_border_of_a_no_fly_zone_is_no_obstacle_to_those_below(world):
     run = Simulation(mission, solve(mission, "greedy"), unknown=True, world=world)
     while not run.done:
         run.advance(run.time_s + 5.0)
-    seen = run._ground.ground.seen
+    seen = run._ground.map.ground.seen
     at = seen.centres(np.argwhere(seen.occupied))
     assert not ((np.abs(at[:, 0] - 5.5) < 0.6) & (np.abs(at[:, 1] - 4.0) < 3.8)).any()
     assert run.result().tasks_done == ("t_0",)
@@ -130,13 +132,13 @@ def test_what_a_silent_robot_sees_reaches_the_team_when_it_is_heard():
     )
     run = Simulation(mission, solve(mission, "greedy"), unknown=True)
     run.advance(0.6)
-    known = np.count_nonzero(run._ground.ground.seen.known)
+    known = np.count_nonzero(run._ground.map.ground.seen.known)
     while run.time_s < 5.0:
         run.advance(5.0)
-    assert np.count_nonzero(run._ground.ground.seen.known) == known
+    assert np.count_nonzero(run._ground.map.ground.seen.known) == known
     while run.time_s < 7.0:
         run.advance(7.0)
-    assert np.count_nonzero(run._ground.ground.seen.known) > known
+    assert np.count_nonzero(run._ground.map.ground.seen.known) > known
 
 
 def test_frontiers_become_tasks_until_all_is_explored():
@@ -173,7 +175,7 @@ def test_a_wide_robot_that_joins_keeps_off_what_was_seen_before():
     run = Simulation(mission, solve(mission, "greedy"), unknown=True)
     run.advance(1.0)
     wide = Body(0.8, "ground")
-    way = run._ground.ground.way(wide, (1.5, 2.0), (10.0, 2.0)).points
+    way = run._ground.map.ground.way(wide, (1.5, 2.0), (10.0, 2.0)).points
     face = shapely.LineString([(6.0, 0.0), (6.0, 4.9)])  # as far as the robot has seen it
     assert shapely.LineString(way).distance(face) > 0.79
 
@@ -241,3 +243,27 @@ def test_five_robots_explore_in_at_most_a_third_of_the_time_of_one(seed):
     one, five = (carried_out(building(seed, robots), explore=True) for robots in (1, 5))
     assert five.time_s <= 0.35 * one.time_s
     assert five.explored_m2 == pytest.approx(one.explored_m2, rel=0.03)
+
+
+@pytest.mark.long(keep=1)
+@pytest.mark.parametrize("explore", [False, True])
+@pytest.mark.parametrize("mission", [random_world(2), random_space(2)], ids=lambda one: one.name)
+def test_a_run_that_goes_on_after_a_crash_has_its_map(mission, explore):
+    first = Simulation(mission, plan := solve(mission, "greedy"), unknown=True, explore=explore)
+    first._ground._kept_s = -100.0
+    while first.time_s < 10.0:
+        first.advance(10.0)
+    first._ground._kept_s = -100.0
+    bodies = json.loads(json.dumps(first.snapshot()))
+    begun = Begun.of(restored(first._executor.mission, checkpoint_of(first.state)), bodies, first.time_s, "kinematic")
+    again = Simulation(mission, plan, unknown=True, explore=explore, begun=begun)
+    known, was = again._ground.map.ground.seen.known, first._ground.map.ground.seen.known
+    assert (known | ~was).all()
+    assert again._ground.map.ground.seen.occupied.sum() >= first._ground.map.ground.seen.occupied.sum()
+    while not again.done:
+        again.advance(again.time_s + 5.0)
+    report = again.result()
+    left = {task.id for task in mission.tasks} - set(report.tasks_done)
+    assert len(left) == 1
+    assert next(iter(left)).startswith("in a ")
+    assert (report.ground.frontiers > 0) == explore

@@ -86,8 +86,11 @@ class Played:
         ports = self.world.ports
         if event.robot_joins is not None:
             ports[event.robot_joins.id] = type(ports["r_0"])(event.robot_joins, self.world.now)
-        for name in filter(None, (event.robot_fails, event.robot_silent, event.robot_returns)):
-            ports[name].broken, ports[name].mute = event.robot_fails is not None, event.robot_silent is not None
+        if event.robot_moved is not None:
+            ports[event.robot_moved.robot].put(event.robot_moved.position)
+        for name in filter(None, (event.robot_fails, event.robot_removed, event.robot_silent, event.robot_returns)):
+            ports[name].broken = bool(event.robot_fails or event.robot_removed)
+            ports[name].mute = event.robot_silent is not None
         self.executor.report_if_it_fits(event)
 
     @property
@@ -121,6 +124,8 @@ SAMPLES = {
     "robot_fails": ["r_0", "r_1", "r_2"],
     "robot_silent": ["r_0"],
     "robot_returns": ["r_0", "r_1"],
+    "robot_removed": ["r_1"],
+    "robot_moved": [{"robot": "r_0", "position": (41.0, 3.0)}, {"robot": "r_2", "position": (2.0, 8.0)}],
     "robot_joins": [NEWCOMER],
     "new_task": [
         Task(id="new", position=(7.0, 7.0), actuation_cost=1.0),

@@ -50,6 +50,8 @@ DATA = {
     "robot_fails": {"robot": "r_1", "reason": "its battery is empty"},
     "robot_silent": {"robot": "r_1", "goes_on": True},
     "robot_stuck": {"robot": "r_1", "reason": "no progress"},
+    "robot_removed": {"robot": "r_1", "reason": "a person took it away"},
+    "robot_moved": {"robot": "r_1", "position": [4.0, 5.0]},
     "robot_returns": {"robot": "r_1", "reason": "it moves again"},
     "robot_joins": {"robot": plain(NEWCOMER)},
     "returns": {"robot": "r_0"},

@@ -2,6 +2,7 @@
 
 from collections import deque
 from itertools import pairwise, product
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -123,7 +124,7 @@ def test_time_limit_is_of_the_clock_given():
 
     graph, starts, goals = crowd()
     found = joint_paths(graph, starts, goals, time_limit=5.0, clock=Late())
-    assert (found.proven, found.reason.split(",")[0]) == (False, "not found with 0 expansions")
+    assert (found.proven, found.reason.split(":")[0]) == (False, "not found with 0 expansions")
 
 
 def test_costs_as_the_benchmarks_count():
@@ -216,3 +217,39 @@ def check_steps(edges, starts, goals, vertices):
     assert vertices[-1] == goals
     for places, to in pairwise(vertices):
         assert tuple(to) in set(next_configurations(edges, places))
+
+
+def test_calls_shrink_where_they_take_much_of_the_limit():
+    """A neighbourhood takes a hundredth of the limit, more than a call may: so a call has one, and none is too late."""
+
+    class Slow:
+        time = 0.0
+
+        def now(self):
+            return self.time
+
+    clock = Slow()
+    made = []
+
+    class Counted:
+        def __init__(self, *arguments, **options):
+            self.search = core.JointRefinement(*arguments, **options)
+
+        def advance(self, count):
+            made.append(count)
+            clock.time += 0.01 * count
+            self.search.advance(count)
+
+        @property
+        def cost(self):
+            return self.search.cost
+
+        def solution(self):
+            return self.search.solution()
+
+    graph, starts, goals = crowd()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("muster.traffic.joint_paths.core", SimpleNamespace(**vars(core) | {"JointRefinement": Counted}))
+        joint_paths(graph, starts, goals, time_limit=1.0, clock=clock, params=Parameters(refine=True))
+    assert made[-1] == 1
+    assert clock.time == pytest.approx(1.0, abs=0.011)

@@ -16,7 +16,7 @@ from muster_studies.jams import scenes
 HOLD_S = 5.0
 
 
-def traveller(start: int, stops: list[tuple[int, float]], *, fixed: bool = False) -> Traveller:
+def traveller(start: int, stops: list[tuple[int, float]], *, fixed: bool = False, stays: bool = True) -> Traveller:
     return Traveller(
         start=start,
         stops=stops,
@@ -27,7 +27,7 @@ def traveller(start: int, stops: list[tuple[int, float]], *, fixed: bool = False
         acceleration=1.0,
         ready=0.0,
         fixed=fixed,
-        stays=True,
+        stays=stays,
     )
 
 
@@ -107,6 +107,14 @@ def test_who_is_cut_off_by_one_that_never_leaves_does_not_hinder_the_others(aisl
     assert math.isnan(ends[0])
     assert ends[1] < math.inf
     assert 2 not in {robot for _, robot, _, _ in moves}
+
+
+def test_who_rests_leaves_the_stops_of_others_free(aisles):
+    stop, other = aisles.stops[0][0], aisles.stops[1][0]
+    first = traveller(aisles.starts[0], [(stop, 0.0)], stays=False)
+    later = traveller(aisles.starts[1], [(other, 60.0), (stop, HOLD_S)], stays=False)
+    _, ends = SharedWays(aisles.search, [first, later], order=[0, 1], ways=0, seed=0).paths()
+    assert max(ends) < math.inf
 
 
 def test_alone_each_is_as_fast_as_if_nobody_else_were_planned(aisles):

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import reduce
 
 from muster import core
@@ -38,6 +38,23 @@ def admissible_alone(problem: Problem, i: int, route: Sequence[int]) -> bool:
     routes: Routes = [[] for _ in problem.robots]
     routes[i] = list(route)
     return bool(core.Inspection(problem.core, routes).admissible)
+
+
+@dataclass(frozen=True)
+class RoutesValue:
+    """What routes come to: whether they are admissible, the weight that they complete, and their objective."""
+
+    admissible: bool
+    weight: float
+    objective: float
+
+
+def value_of(problem: Problem, routes: Routes) -> RoutesValue:
+    """Return the value of routes, which may deadlock: they are not admissible then, and have no objective."""
+    inspection = core.Inspection(problem.core, routes)
+    weight = sum(problem.tasks[j].priority for j in sorted({j for route in routes for j in route}))
+    objective = inspection.objective
+    return RoutesValue(inspection.admissible and objective is not None, weight, 0.0 if objective is None else objective)
 
 
 def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:
@@ -119,15 +136,38 @@ def _timed_part(problem: Problem, routes: Routes) -> Routes:
     place = dict(sorted((j, k) for route in routes for k, j in enumerate(route)))  # the last of a team's places
     units = {tuple(sorted(_unit(problem, j) - kept)) for j in place.keys() - kept}
     pending = sorted(units, key=lambda unit: (max(place.get(j, 0) for j in unit), unit))
-    while pending:
-        ready = next((unit for unit in pending if _is_whole(problem, unit, place, kept)), None)
-        if ready is None:
-            break
-        pending.remove(ready)
-        more = kept.union(ready)
-        if core.Inspection(problem.core, [[j for j in route if j in more] for route in routes]).admissible:
-            kept = more
+    kept = _fitting(problem, routes, kept, _whole(problem, pending, place, kept))
     return [[j for j in route if j in kept] for route in routes]
+
+
+def _fitting(problem: Problem, routes: Routes, kept: set[int], units: Sequence[Sequence[int]]) -> set[int]:
+    """The tasks kept, with those of units that fit: tried all at once, and in halves where these do not fit.
+
+    Where all fit, or all but a few, that takes few inspections of the routes, however many units there are.
+    """
+    whole = _whole(problem, units, (), kept)
+    more = kept.union(*whole)
+    if not whole or core.Inspection(problem.core, [[j for j in route if j in more] for route in routes]).admissible:
+        return more
+    if len(whole) == 1:
+        return kept
+    half = len(whole) // 2
+    return _fitting(problem, routes, _fitting(problem, routes, kept, whole[:half]), whole[half:])
+
+
+def _whole(
+    problem: Problem, units: Iterable[Sequence[int]], there: Collection[int], kept: Collection[int]
+) -> list[Sequence[int]]:
+    """The units of which all tasks are there, if any are given, each after those that must be done before it."""
+    found, waiting, sure = [], [], set(kept)
+    for unit in units:
+        waiting.append(unit)
+        while (ready := next((one for one in waiting if _is_ready(problem, one, sure)), None)) is not None:
+            waiting.remove(ready)
+            if not there or all(j in there for j in ready):
+                found.append(ready)
+                sure.update(ready)
+    return found
 
 
 def _unit(problem: Problem, j: int) -> set[int]:
@@ -141,10 +181,9 @@ def _unit(problem: Problem, j: int) -> set[int]:
     return unit
 
 
-def _is_whole(problem: Problem, unit: Sequence[int], place: Mapping[int, int], kept: Collection[int]) -> bool:
-    """Whether all tasks of a unit are there, and what must be done before them is kept."""
-    before = {other for j in unit for other in problem.prerequisites[j]}
-    return all(j in place for j in unit) and before <= {*kept, *unit}
+def _is_ready(problem: Problem, unit: Sequence[int], kept: Collection[int]) -> bool:
+    """Whether what must be done before a unit is kept, or of the unit itself."""
+    return all(before in kept or before in unit for j in unit for before in problem.prerequisites[j])
 
 
 def _too_much(usage: float, capacity: float) -> bool:

@@ -20,9 +20,9 @@ class AnnotatedRoadmap:
 class Problem:
     """The compiled question: arrays that no algorithm changes."""
 
-    def __init__(self, *, objective: str, usage_is_time: bool, capacity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], available_from: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], must_end: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], fixed: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], actuation_cost: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], work_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], work_seconds: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], time_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], priority: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], kind: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], allowed: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], prerequisites: Sequence[Sequence[int]], entry: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exit: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], place_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], table: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], travel_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], openings: Sequence[Sequence[tuple[float, float]]], ends_by: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], due: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], over_by: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], lasts_most: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], spans: Sequence[Sequence[tuple[float, float]]], gap_least: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], gap_most: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], unit: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], parts: Sequence[Sequence[tuple[int, Sequence[bool]]]], abilities: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], needs: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exclusive: Sequence[Sequence[int]], same_crew: Sequence[Sequence[int]], apart: Sequence[Sequence[int]], least_stops: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], acceleration: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], climb: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], turn: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], over_map: bool, makespan_includes_return: bool, meters: int, load: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], pending: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], pickup: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], most_aboard: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], aboard_at_start: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], pending_at_start: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], energy: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], energy_at_start: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], stations: Sequence[tuple[float, float, bool, bool, int]], calls: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], over: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], waiting: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], waits: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)]) -> None:
+    def __init__(self, *, objective: str, usage_is_time: bool, capacity: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], speed: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], available_from: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], must_end: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], fixed: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], actuation_cost: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], work_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], work_seconds: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], time_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], priority: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], kind: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], allowed: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], prerequisites: Sequence[Sequence[int]], entry: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exit: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], place_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], table: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], travel_class: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], seconds: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], openings: Sequence[Sequence[tuple[float, float]]], ends_by: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], due: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], over_by: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], lasts_most: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], spans: Sequence[Sequence[tuple[float, float]]], gap_least: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], gap_most: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], unit: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], parts: Sequence[Sequence[tuple[int, Sequence[bool]]]], abilities: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], needs: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], exclusive: Sequence[Sequence[int]], same_crew: Sequence[Sequence[int]], apart: Sequence[Sequence[int]], least_stops: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], acceleration: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], climb: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], turn: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], over_map: bool, makespan_includes_return: bool, meters: int, load: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], pending: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], pickup: Annotated[NDArray[numpy.int32], dict(order='C', device='cpu', writable=False)], most_aboard: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], aboard_at_start: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], pending_at_start: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], energy: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], energy_at_start: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], stations: Sequence[tuple[float, float, bool, bool, int]], calls: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], over: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)], waiting: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], waits: Annotated[NDArray[numpy.bool_], dict(order='C', device='cpu', writable=False)]) -> None:
         """
-        Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; `actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and `time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, 3) metres in the map frame for tasks, starts and ends of robots, and `place_class` is (m,); `table`, where ways are not straight, is (classes, n + 2m, n + 2m) metres with each robot's `travel_class`. What is empty of the rest no task or robot has: by task `openings`, `ends_by`, `due`, `unit` (tasks of one begin together), `parts` of teams (count, allowed by kind), `exclusive`, `same_crew`, `apart`; by robot `over_by`, `lasts_most` (from its start to its end), `spans` in which it drives and works, `least_stops` (of a route that has any); `gap_least` and `gap_most` by prerequisite; `abilities` (m, a) and `needs` (n, a); by robot `acceleration`, `climb`, `turn` (seconds) of motion profiles, and `over_map` whether what is longer than the straight way has bends; `load` and `pending` (n, meters) what a task adds to the load, and how much of that another delivers, `pickup` (n,) the task that takes on what a task delivers, -1 for none, `most_aboard` and `aboard_at_start` (m, meters); `energy` and `energy_at_start` (m,) in the unit of usage, the reserve taken off, inf without a limit of energy; `stations` (refill by second, swap_s, unloads, partial, slots), whose places stand after the ends of robots; `over` (n,) marks tasks that stand for what was done, before which no station is called at; `waiting` (n + 2m, n + 2m) seconds for others between places, of the robots that `waits` (m,) marks. Raises ValueError if shapes do not fit.
+        Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; `actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and `time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, 3) metres in the map frame for tasks, starts and ends of robots, and `place_class` is (m,); `table`, where ways are not straight, is (classes, n + 2m, n + 2m) metres with each robot's `travel_class`; `seconds`, of its shape, how long ways take where metres do not tell. What is empty of the rest no task or robot has: by task `openings`, `ends_by`, `due`, `unit` (tasks of one begin together), `parts` of teams (count, allowed by kind), `exclusive`, `same_crew`, `apart`; by robot `over_by`, `lasts_most` (from its start to its end), `spans` in which it drives and works, `least_stops` (of a route that has any); `gap_least` and `gap_most` by prerequisite; `abilities` (m, a) and `needs` (n, a); by robot `acceleration`, `climb`, `turn` (seconds) of motion profiles, and `over_map` whether what is longer than the straight way has bends; `load` and `pending` (n, meters) what a task adds to the load, and how much of that another delivers, `pickup` (n,) the task that takes on what a task delivers, -1 for none, `most_aboard` and `aboard_at_start` (m, meters); `energy` and `energy_at_start` (m,) in the unit of usage, the reserve taken off, inf without a limit of energy; `stations` (refill by second, swap_s, unloads, partial, slots), whose places stand after the ends of robots; `over` (n,) marks tasks that stand for what was done, before which no station is called at; `waiting` (n + 2m, n + 2m) seconds for others between places, of the robots that `waits` (m,) marks. Raises ValueError if shapes do not fit.
         """
 
     @property
@@ -603,6 +603,24 @@ class Ways:
         Rows `first` to before `last` of the lengths from exits to entries; inf where there is no way. If `mutual`, the entries are the exits, and row i holds what comes after column i alone, and 0 there.
         """
 
+class LaneWays:
+    """
+    The quickest ways along directed lanes for a robot that slows down for bends.
+    """
+
+    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], ends: Sequence[tuple[int, int]], seconds: Sequence[float], *, turn: float, stop: float) -> None:
+        """
+        Points (n, 2) and straight arcs between them, by number, each with the seconds that it takes. `turn` and `stop` are the seconds that a bend by a right angle takes for turning, and for stopping. Raises ValueError where these do not fit.
+        """
+
+    def lengths(self, starts: Sequence[int], goals: Sequence[int], threads: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64]]:
+        """
+        Of the quickest ways from each start to each goal, by number, the metres and the seconds, bends included: two arrays (starts, goals). They are inf where there is no way, and where a number is below 0.
+        """
+
+    def way(self, start: int, goal: int) -> list[int]:
+        """The points of the quickest way, by number; none where there is no way."""
+
 class AirWays:
     """Short ways through the air over and around upright prisms, in metres."""
 
@@ -657,6 +675,35 @@ class Tree:
         """
         The shortest way found so far with its ends, (k, 3); empty if there is none.
         """
+
+class VoxelWays:
+    """Short ways through free voxels; coordinates x, y, z count in voxels."""
+
+    def __init__(self, blocked: Annotated[NDArray[numpy.bool_], dict(shape=(None, None, None), order='C', device='cpu', writable=False)]) -> None:
+        """`blocked` is (layers, rows, columns)."""
+
+    def free(self, point: Sequence[float]) -> bool: ...
+
+    def sees(self, a: Sequence[float], b: Sequence[float]) -> bool:
+        """Whether all voxels between two points are free."""
+
+    def part(self, point: Sequence[float]) -> int:
+        """
+        The number of the connected part that a point is in; 0 if it is not free.
+        """
+
+    def way(self, start: Sequence[float], goal: Sequence[float]) -> NDArray[numpy.float64]:
+        """A way with its ends, (k, 3); empty if there is none."""
+
+def voxels_passed(shape: Sequence[int], eye: Sequence[float], heading: float, reached: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)]) -> NDArray[numpy.int64]:
+    """
+    The voxels, as indices of the flat array, whose centres are nearer than the four beams around them reached, by a voxel at least. `reached` is (rings, columns), in voxels: rings from straight down to straight up, columns anticlockwise from `heading`.
+    """
+
+def lower_clearances(clearances: Annotated[NDArray[numpy.float32], dict(shape=(None, None, None), order='C', device='cpu')], points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], reach: float) -> None:
+    """
+    Lower the distances from the centres of voxels to the nearest of points (n, 3), where that is within `reach`.
+    """
 
 def spanning_tree(legs: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], root: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], p: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], joined: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], parent: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]) -> None:
     """
@@ -798,6 +845,9 @@ class CrowdWorld:
     def fail(self, robot: int) -> None: ...
 
     def recover(self, robot: int) -> None: ...
+
+    def place(self, robot: int, position: Sequence[float]) -> None:
+        """Puts a robot elsewhere: it stands there, without an order."""
 
     def slow(self, robot: int, factor: float) -> None: ...
 
@@ -1042,21 +1092,41 @@ class DirectedGraph:
         What it costs to come to a vertex from each; infinite where there is no way.
         """
 
+class TrafficGuidance:
+    """Ways of robots to their goals that avoid those who come the other way."""
+
+    def __init__(self, graph: DirectedGraph, starts: Sequence[int], goals: Sequence[int], seed: int) -> None:
+        """
+        Raises ValueError where starts or goals are no vertices, or not of the same number.
+        """
+
+    def advance(self, steps: int) -> None:
+        """Two steps a robot."""
+
+    @property
+    def finished(self) -> bool: ...
+
+    @property
+    def connected(self) -> bool:
+        """Whether each robot alone comes to its goal, so far."""
+
+    @property
+    def least_sum(self) -> int:
+        """
+        The sum of the numbers of steps on the shortest ways of the robots; once finished.
+        """
+
 class Lacam:
     """
     Search over configurations of robots that take a step on a graph at once.
     """
 
-    def __init__(self, graph: DirectedGraph, starts: Sequence[int], goals: Sequence[int], *, samples: int = 1, seed: int = 0, anytime: bool = False) -> None:
+    def __init__(self, guidance: TrafficGuidance, *, samples: int = 1, seed: int = 0, anytime: bool = False) -> None:
         """
-        Raises ValueError where starts or goals are no vertices, or not of the same number.
+        Raises ValueError where the guidance is not finished, or a robot alone has no way.
         """
 
     def advance(self, expansions: int) -> None: ...
-
-    @property
-    def connected(self) -> bool:
-        """Whether each robot alone comes to its goal."""
 
     @property
     def state(self) -> str:
@@ -1074,14 +1144,16 @@ class Lacam:
         Steps in which robots do not rest at their goals, of the best solution.
         """
 
-    def solution(self) -> list[list[int]]:
-        """The vertex of each robot, step by step. Only after it is solved."""
+    def solution(self) -> NDArray[numpy.int64]:
+        """
+        The vertex of each robot, (steps + 1, robots). Raises ValueError before it is solved.
+        """
 
 class JointRefinement:
     """Large neighbourhood search over the paths of robots."""
 
-    def __init__(self, graph: DirectedGraph, steps: Sequence[Sequence[int]], seed: int) -> None:
-        """Raises ValueError where `steps` are no paths."""
+    def __init__(self, guidance: TrafficGuidance, steps: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order='C', writable=False)], seed: int) -> None:
+        """Raises ValueError where `steps` are no paths to the goals."""
 
     def advance(self, neighbourhoods: int) -> None: ...
 
@@ -1089,8 +1161,8 @@ class JointRefinement:
     def cost(self) -> int:
         """Steps until each robot rests at its goal for good, summed up."""
 
-    def solution(self) -> list[list[int]]:
-        """The vertex of each robot, step by step."""
+    def solution(self) -> NDArray[numpy.int64]:
+        """The vertex of each robot, (steps + 1, robots)."""
 
 class MovePlanner:
     """

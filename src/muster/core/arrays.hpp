@@ -27,6 +27,14 @@ inline std::vector<Point> points_of(const PointArray& array) {
   return points;
 }
 
+inline std::vector<Spot> spots_of(const PointArray& array) {
+  if (array.ndim() != 2 || array.shape(1) != 3) throw std::invalid_argument("an array of places must be (n, 3)");
+  std::vector<Spot> spots(array.shape(0));
+  for (std::size_t k = 0; k < spots.size(); ++k)
+    spots[k] = {array.data()[3 * k], array.data()[3 * k + 1], array.data()[3 * k + 2]};
+  return spots;
+}
+
 inline Table table_of(std::vector<double> values, std::size_t rows, std::size_t columns) {
   auto* kept = new std::vector<double>(std::move(values));
   const nanobind::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });

@@ -23,8 +23,10 @@ NB_MODULE(_core, m) {
   muster::bind_distances(m);
   muster::bind_grid(m);
   muster::bind_ways(m);
+  muster::bind_lane_ways(m);
   muster::bind_air(m);
   muster::bind_tree(m);
+  muster::bind_voxels(m);
   muster::bind_spanning_tree(m);
   muster::bind_avoidance(m);
   muster::bind_crowd_world(m);

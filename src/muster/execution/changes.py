@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+import math
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from itertools import islice
 
 from muster.execution.goods_beside import fetching_place
 from muster.execution.record import Tell
@@ -14,13 +16,15 @@ from muster.execution.robots.task_motion import Way, place, straight
 from muster.execution.robots.work_orders import stop_work
 from muster.execution.stations.slots import AT_STATION, Stations
 from muster.mission.errors import MissionError, ParameterError
+from muster.mission.events import MovedRobot
 from muster.mission.model import Event, Mission, Robot, Task
+from muster.mission.task_relations import tasks_named_by
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import RobotPort
 from muster.state import MissionState
-from muster.state.robot_events import RobotFails, RobotJoins, RobotOut, RobotReturns
+from muster.state.robot_events import RobotFails, RobotJoins, RobotMoved, RobotOut, RobotRemoved, RobotReturns
 from muster.state.robots import KnownRobot
 from muster.state.station_events import DoorCloses, DoorOpens, StationFails, StationReturns
 from muster.state.task_events import CancelTask, DelayTask, LoadLies, MoveTask, NewTask, WorkBrokenOff
@@ -47,6 +51,8 @@ class Changes:
         the ways that robots go.
     on_doors
         receives the ids of the doors that are closed, when one closes or opens.
+    on_moved
+        receives the id of a robot that somebody has put elsewhere.
     """
 
     mission: Mission
@@ -58,6 +64,7 @@ class Changes:
     ask: Tell
     way: Way = straight
     on_doors: Callable[[Collection[str]], None] = lambda closed: None
+    on_moved: Callable[[str], None] = lambda robot: None
 
     @property
     def ledger(self) -> Ledger:
@@ -76,13 +83,7 @@ class Changes:
             if the event names a robot, task or door that there is not, or one anew that there is, or a robot without
             port.
         """
-        if event.robot_fails is not None:
-            self.exclude(self._robot_state(event.robot_fails), RobotFails, now, reason)
-        elif event.robot_returns is not None:
-            self.readmit(self._robot_state(event.robot_returns), now)
-        elif event.robot_joins is not None:
-            self._join(event.robot_joins, now)
-        elif event.new_task is not None:
+        if event.new_task is not None:
             self._add(event.new_task, came_s)
         elif event.cancel_task is not None:
             self._cancel(self._task(event.cancel_task), now)
@@ -96,6 +97,20 @@ class Changes:
             self._fail_station(self._station(event.station_fails), now)
         elif event.station_returns is not None:
             self._return_station(self._station(event.station_returns))
+        else:
+            self._apply_to_robot(event, now, reason)
+
+    def _apply_to_robot(self, event: Event, now: float, reason: str) -> None:
+        if event.robot_fails is not None:
+            self.exclude(self._robot_state(event.robot_fails), RobotFails, now, reason)
+        elif event.robot_removed is not None:
+            self.exclude(self._robot_state(event.robot_removed), RobotRemoved, now, reason)
+        elif event.robot_returns is not None:
+            self.readmit(self._robot_state(event.robot_returns), now)
+        elif event.robot_joins is not None:
+            self._join(event.robot_joins, now)
+        elif event.robot_moved is not None:
+            self._put(event.robot_moved, now)
 
     def _fail_station(self, station: str, now: float) -> None:
         """Robots that are served there, wait there, or are on the way to it stop; all are planned again."""
@@ -114,8 +129,10 @@ class Changes:
 
     def exclude(self, robot: RobotState, why: type[RobotOut], now: float, detail: str = "") -> None:
         """Exclude a robot: its tasks are free, the current one too."""
-        failed = robot.out == RobotFails.kind
-        if failed or (robot.out and why is not RobotFails):
+        gone = robot.out in (RobotFails.kind, RobotRemoved.kind)
+        if robot.out == why.kind or (gone and why is not RobotRemoved):
+            return
+        if robot.out and why not in (RobotFails, RobotRemoved):
             return
         name, at_work = robot.robot.id, robot.activity is Activity.WORKING
         robot.out_at = robot.position
@@ -138,8 +155,49 @@ class Changes:
             at = beside[: self.mission.dimensions]
             self.ask(LoadLies(task=task, robot=robot.robot.id, position=at, load=dict(amounts)))
 
+    def require_place(self, moved: MovedRobot) -> None:
+        """Raise ParameterError where nobody can put a robot: no such robot, no such place, or no room for it there."""
+        robot = self._robot_state(moved.robot)
+        if robot.out == RobotRemoved.kind:
+            raise ParameterError(f"robot_moved.robot: {shown(moved.robot)}; expected one that was not taken away")
+        self._require_room("robot_moved", robot, moved.position)
+
+    def _require_room(self, what: str, robot: RobotState, at: tuple[float, ...]) -> None:
+        if len(at) != self.mission.dimensions:
+            expected = f"{self.mission.dimensions} coordinates"
+            raise ParameterError(f"{what}.position: {shown(list(at))}; expected {expected}")
+        there, radius_m = place(at), robot.robot.radius_m
+        if not self.travel.stands(robot.robot, there):
+            raise ParameterError(f"{what}.position: {shown(list(at))}; expected a place where {robot.robot.id} is free")
+        for other in self.crew.values():
+            here = other is not robot and other.out != RobotRemoved.kind
+            if here and math.dist(other.position, there) < radius_m + other.robot.radius_m:
+                expected = f"a place clear of {other.robot.id}, which is at {shown(list(other.position[: len(at)]))}"
+                raise ParameterError(f"{what}.position: {shown(list(at))}; expected {expected}")
+
+    def _put(self, moved: MovedRobot, now: float) -> None:
+        """Somebody has moved a robot: it goes on from there, and work that it was at is begun again."""
+        self.require_place(moved)
+        robot = self._robot_state(moved.robot)
+        at_work = robot.activity is Activity.WORKING
+        broken = stop_work(self.crew, self.ledger, robot.route[0], now) if at_work else ()
+        robot.stop(now)
+        robot.at_home, robot.left = False, place(moved.position)
+        self.on_moved(moved.robot)
+        self.ask(RobotMoved(robot=moved.robot, position=moved.position))
+        for task in broken:
+            if len(self.ledger.unit(task)) > 1 or self.ledger.tasks[task].is_for_team:
+                self.ask(WorkBrokenOff(task=task, robot=moved.robot))
+
+    def require_return(self, name: str) -> None:
+        """Raise ParameterError where a robot that was taken away cannot be put back: others are in its place."""
+        robot = self._robot_state(name)
+        if robot.out == RobotRemoved.kind and robot.out_at is not None:
+            self._require_room("robot_returns", robot, robot.out_at[: self.mission.dimensions])
+
     def readmit(self, robot: RobotState, now: float, reason: str = "") -> None:
-        """Let a robot take part again, from where it is."""
+        """Let a robot take part again, from where it is; one that was taken away from where that was."""
+        self.require_return(robot.robot.id)
         if robot.out:
             robot.last_heard_s, robot.sent_again = now, 0
             self._open_ways()
@@ -170,8 +228,11 @@ class Changes:
     def _require_fit(self, what: str, *, robots: tuple[Robot, ...] = (), tasks: tuple[Task, ...] = ()) -> None:
         """A mission with these robots and tasks, and those that there are, must be one."""
         there = {robot.id: robot for robot in (*self.mission.robots, *(one.robot for one in self.crew.values()))}
+        beside: Iterable[Task] = self.ledger.tasks.values()
+        if not robots and not any(map(tasks_named_by, tasks)):  # what names no other fits however many there are
+            beside = islice(beside, 1)
         try:
-            self.mission.at_once(robots=(*there.values(), *robots), tasks=(*self.ledger.tasks.values(), *tasks))
+            self.mission.at_once(lanes=None, robots=(*there.values(), *robots), tasks=(*beside, *tasks))
         except MissionError as error:
             found = error.findings[0]
             name = [*(robot.id for robot in robots), *(task.id for task in tasks)][0]

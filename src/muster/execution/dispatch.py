@@ -221,7 +221,7 @@ class Dispatch:
         if way is None:
             return False
         if begin != state.position:
-            way = [begin, *way]
+            way = [Waypoint(begin), *way]
         state.turn_off(now, way, standing.robot.id)
         self._emit(RobotGoesRound(robot=state.robot.id, round=standing.robot.id))
         return True
@@ -237,14 +237,14 @@ class Dispatch:
         state.at_home, state.makes_room = False, True
         self._emit(RobotMakesRoom(robot=state.robot.id, makes_room_for=asker.robot.id))
 
-    def way(self, state: RobotState, goal: Place) -> Sequence[Place] | None:
+    def way(self, state: RobotState, goal: Place) -> Sequence[Waypoint] | None:
         """The way from where a robot is; by way of the last place known to be free, if it stands where it cannot."""
         found = self._way(state.robot, state.position, goal)
         begin = self._free_place(state) if found is None else state.position
         if begin == state.position:
             return found
         onward = self._way(state.robot, begin, goal)
-        return None if onward is None else [begin, *onward]
+        return None if onward is None else [Waypoint(begin), *onward]
 
     def go_other_ways(self, state: RobotState, now: float) -> float | None:
         """Send a robot under way to what is left of its stops by the ways that there are now.
@@ -253,7 +253,7 @@ class Dispatch:
         -------
         by how many metres the way is longer than it was; None where there is none, and the robot keeps its order.
         """
-        before, ways, at = state.way_left_m, list[Sequence[Place]](), state.position
+        before, ways, at = state.way_left_m, list[Sequence[Waypoint]](), state.position
         for stop in state.stops_left:
             way = self._way(state.robot, at, stop.position) if ways else self.way(state, stop.position)
             if way is None:

@@ -20,9 +20,10 @@ from muster.execution.dispatch import Dispatch
 from muster.execution.peers import Peers
 from muster.execution.record import NoObserver, Observer
 from muster.execution.replanning.insertion import Insertion
+from muster.execution.replanning.near_robots import NearRobots
 from muster.execution.replanning.reallocation import Reallocation, Revision, first_ahead
 from muster.execution.replanning.remaining_problem import RemainingMission
-from muster.execution.replanning.situation import remaining_mission_of, required_routes, whole_plan
+from muster.execution.replanning.situation import Part, remaining_mission_of, required_routes, whole_plan
 from muster.execution.replanning.travel import Travel, travel_of
 from muster.execution.reports.report import Account
 from muster.execution.reports.work_figures import back_s, overtime_s, planned_so_far, robot_row
@@ -41,7 +42,7 @@ from muster.execution.timing.forecast import Forecast
 from muster.execution.timing.outlooks import Outlooks
 from muster.execution.timing.punctuality import Punctuality
 from muster.mission.errors import ParameterError
-from muster.mission.model import Event, Mission, Robot
+from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
@@ -51,7 +52,7 @@ from muster.state.mission_state import AT_MOST_ONCE
 from muster.state.quantiles import Quantiles
 from muster.state.robot_events import RobotFails, RobotsFree, RobotSilent, RobotStuck, WayClosed
 from muster.state.run_events import IMPROVED, EventRefused, MissionEnded, PlanAdopted, Replanned, Resumed
-from muster.state.task_events import DoneElsewhere, Lost, WorkBrokenOff
+from muster.state.task_events import DoneElsewhere, Lost, NewTask, WorkBrokenOff
 
 MUCH_LONGER, MUCH_LONGER_M = 0.25, 2.0
 """Share of a way, taken as longer by some metres, by which another is longer so that the rest is planned again."""
@@ -138,10 +139,12 @@ class Executor:
         self._travel = travel_of(mission) if travel is None else travel
         self._replan = Reallocation(travel=self._travel) if replan is None else replan
         self._insertion = Insertion(self._travel)
+        self._near = NearRobots(self.ledger, self.crew)
         self._observer = NoObserver() if observer is None else observer
         self._asked: list[ExecutionEvent] = []
+        leader = NoLeader() if leader is None else leader
         self._changes = Changes(
-            mission, self.state, self.crew, ports, self._travel, self.stations, self._ask, way, on_doors
+            mission, self.state, self.crew, ports, self._travel, self.stations, self._ask, way, on_doors, leader.moved
         )
         self._alone = peers is None
         self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)
@@ -183,7 +186,7 @@ class Executor:
             self.emit,
             self._ask,
             now,
-            NoLeader() if leader is None else leader,
+            leader,
         )
         self._deadlocks = Deadlocks(self.ledger, self.crew, self._beginning, self._punctuality, self._ask)
         self._forgetting = Forgetting(self.ledger, self.crew, self._forecast, self._standing.keep_s, self.emit)
@@ -271,9 +274,17 @@ class Executor:
             if state.activity is Activity.WORKING:
                 state.send_again(self.now_s)
 
-    def require_newcomer(self, robot: Robot) -> None:
-        """Raise ParameterError where a robot cannot join; its port need not be there yet."""
-        self._changes.require_newcomer(robot)
+    def require_room(self, event: Event) -> None:
+        """Raise ParameterError where an event brings a robot that cannot join, or puts one where it cannot stand.
+
+        The port of one that joins need not be there yet.
+        """
+        if event.robot_joins is not None:
+            self._changes.require_newcomer(event.robot_joins)
+        elif event.robot_moved is not None:
+            self._changes.require_place(event.robot_moved)
+        elif event.robot_returns is not None:
+            self._changes.require_return(event.robot_returns)
 
     def report_if_it_fits(self, event: Event, reason: str = "", came_s: float | None = None) -> bool:
         """As `report`, but an event that does not fit is refused, with the event `event_refused`."""
@@ -442,7 +453,7 @@ class Executor:
         self._asked.append(cause)
         self.emit(cause)
 
-    def _rest(self) -> RemainingMission:
+    def _rest(self, part: Part | None = None) -> RemainingMission:
         return remaining_mission_of(
             self.mission,
             self.planned,
@@ -452,27 +463,46 @@ class Executor:
             self.stations,
             self.goods,
             on_duty=self._on_duty,
+            part=part,
         )
 
     def _plan_again(self) -> None:
-        causes, self._asked = [{"kind": cause.kind, **cause.data} for cause in self._asked], []
-        self._adopt(self._replan(self._rest()), causes)
+        asked, self._asked = self._asked, []
+        revision = self._with_orders([cause.task_id for cause in asked if isinstance(cause, NewTask)], asked)
+        revision = self._replan(self._rest()) if revision is None else revision
+        self._adopt(revision, [{"kind": cause.kind, **cause.data} for cause in asked])
+
+    def _with_orders(self, orders: Sequence[str], asked: Sequence[ExecutionEvent]) -> Revision | None:
+        """New orders put into routes of robots near them, if nothing else has happened; None: that is not enough."""
+        if not isinstance(self._replan, Insertion) or len(orders) < len(asked) or self.mission.stations:
+            return None
+        part = self._near.part(orders)
+        revision = None if part is None else self._replan(self._rest(part))
+        return None if revision is None or revision.left_out else replace(revision, is_part=True)
 
     def _adopt(self, revision: Revision, causes: Sequence[Mapping[str, Any]]) -> None:
         """Go on by a new plan of the rest."""
         for state in self._present:
             robot = state.robot.id
-            self._dispatch.take_route(state, revision.routes.get(robot, ()), self.now_s, revision.calls.get(robot, ()))
+            if robot in revision.routes or not revision.is_part:
+                calls = revision.calls.get(robot, ())
+                self._dispatch.take_route(state, revision.routes.get(robot, ()), self.now_s, calls)
         for state in self.crew.values():
             if state.out:
                 state.route = []
         known = self.state.left_out
         fresh = revision.left_out.keys() - known.keys() - set(revision.dropped)
         left_out = {task: why for task, why in revision.left_out.items() if task in fresh}
-        self._dispatch.ahead = revision.ahead
+        self._dispatch.ahead = {**self._dispatch.ahead, **revision.ahead} if revision.is_part else revision.ahead
         self._punctuality.expect(self._forecast, self.now_s)
         self.revisions.append(revision)
         self.emit(Replanned(causes=tuple(causes), **revision.difference(), left_out=left_out))
+        if revision.is_part:
+            routes = {name: tuple(self.crew[name].route) for name in revision.routes}
+            why = {**dict.fromkeys(revision.added), **revision.left_out}
+            self.state.apply(PlanAdopted(routes=routes, left_out=why).at(self.now_s))
+            self._observer.on_plan(self.now_s, self.plan)
+            return
         plan = whole_plan(self.mission, self.planned, self.crew, self.ledger, revision.left_out)
         self.state.apply(PlanAdopted.of(plan, self.state).at(self.now_s))
         self._observer.on_plan(self.now_s, plan)
@@ -487,7 +517,7 @@ class Executor:
         if improver is None:
             return
         found = improver.found(self.now_s)
-        better = None if found is None else self._insertion.merged(self._rest(), found)
+        better = self._better(found) if found else None
         if better is not None:
             self._adopt(better, [{"kind": IMPROVED}])
             self._go_on()
@@ -498,6 +528,12 @@ class Executor:
         ):
             self._plans_searched = self.state.replanned
             improver.begin(self._rest())
+
+    def _better(self, found: Mapping[str, Sequence[str]]) -> Revision | None:
+        """Routes that a search has found, as far as they are worth it now; None: none is."""
+        part = None if self.mission.stations else self._near.around(found)
+        better = self._insertion.merged(self._rest(part), found)
+        return better if better is None or part is None else replace(better, is_part=True)
 
     def _forget(self) -> None:
         """Of a standing fleet what is long done is forgotten."""

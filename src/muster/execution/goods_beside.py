@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection, Sequence
 
 from muster.execution.robots.robot_state import RobotState
-from muster.execution.robots.task_motion import Way, along, path_length
+from muster.execution.robots.task_motion import Way, path_length
 from muster.mission.model import Task
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.port import Place
@@ -68,7 +68,7 @@ def _stands(state: RobotState) -> Sequence[Place]:
 def _way_m(state: RobotState, place: Place, way: Way) -> float:
     """The length of a robot's way to a place; inf where there is none."""
     found = way(state.robot, state.position, place)
-    return math.inf if found is None else path_length(state.position, along(found))
+    return math.inf if found is None else path_length(state.position, found)
 
 
 def _beside(place: Place, away_m: float, turn: int) -> Place:

@@ -39,7 +39,7 @@ class Improver(Protocol):
         ...
 
     def found(self, now: float) -> Mapping[str, Sequence[str]] | None:
-        """The routes that were found, by robot, if it is time for them; it is idle then."""
+        """The routes that were found, by robot, if it is time for them; it is idle then. Others keep theirs."""
         ...
 
     def close(self) -> None:

@@ -49,9 +49,16 @@ class Leader(Protocol):
         """Whether a robot that has nothing to do was told several times to make room, and has not moved."""
         ...
 
+    def moved(self, robot: str) -> None:
+        """Somebody has put a robot, by its name, where it now says that it is."""
+        ...
+
 
 class NoLeader:
     """Nobody is known to be cut off, or told to make room."""
+
+    def moved(self, robot: str) -> None:
+        """See `Leader`."""
 
     def reaches(self, robot: str, places: Sequence[Place]) -> list[bool]:
         """See `Leader`."""

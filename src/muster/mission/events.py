@@ -19,6 +19,12 @@ class MovedTask(Checked):
 
 
 @record
+class MovedRobot(Checked):
+    robot: str = spec(Text(), "id of the robot")
+    position: Point = spec(Position(), "where somebody has put it", instead=IN_DEGREES)
+
+
+@record
 class DelayedTask(Checked):
     task: str = spec(Text(), "id of the task")
     by_s: float = spec(Number(minimum=0), "how much longer it takes")
@@ -32,6 +38,8 @@ class Event(Checked):
     robot_fails: str | None = spec(Text(), "id of the robot", default=None)
     robot_silent: str | None = spec(Text(), "id of the robot", default=None)
     robot_returns: str | None = spec(Text(), "id of the robot", default=None)
+    robot_removed: str | None = spec(Text(), "id of the robot that somebody takes away", default=None)
+    robot_moved: MovedRobot | None = spec(Record(MovedRobot, "a robot and its position"), "who is moved", default=None)
     robot_joins: Robot | None = spec(Record(Robot, "a robot"), "the robot", default=None)
     new_task: Task | None = spec(Record(Task, "a task"), "the task", default=None)
     cancel_task: str | None = spec(Text(), "id of the task", default=None)

@@ -70,8 +70,22 @@ class MissionData(Checked):
 
     @property
     def travel_rule(self) -> str:
-        """How travel is measured: as the rules say, else by the map where there is one, else straight."""
-        return self.rules.travel or ("euclidean" if self.map is None else "map")
+        """How travel is measured: as the rules say, else along lanes where there are any, else as off lanes."""
+        return self.rules.travel or ("lanes" if self.lanes is not None else self._without_lanes)
+
+    @property
+    def driven_lanes(self) -> Lanes | None:
+        """The lanes that robots on the ground keep to; None where travel is by another rule."""
+        return self.lanes if self.travel_rule == "lanes" else None
+
+    @property
+    def travel_off_lanes(self) -> str:
+        """How robots travel that keep to no lanes, those in the air: by the rule, else by the map, else straight."""
+        return self._without_lanes if self.travel_rule == "lanes" else self.travel_rule
+
+    @property
+    def _without_lanes(self) -> str:
+        return "euclidean" if self.map is None else "map"
 
     @property
     def has_straight_legs_among_areas(self) -> bool:
@@ -81,8 +95,13 @@ class MissionData(Checked):
 
     @property
     def has_ways_by_map(self) -> bool:
-        """Whether the map decides which ways there are: shortest paths, or straight legs that it closes."""
-        return self.travel_rule == "map" or self.has_straight_legs_among_areas
+        """Whether the map decides which ways there are: shortest paths, or straight legs and lanes that it closes."""
+        return self.travel_off_lanes == "map" or self.has_straight_legs_among_areas
+
+    @property
+    def has_paths(self) -> bool:
+        """Whether ways are other than straight between their ends, or some of them are closed."""
+        return self.driven_lanes is not None or self.has_ways_by_map
 
     @property
     def has_goods(self) -> bool:

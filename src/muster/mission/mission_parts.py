@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
+from muster.mission.events import Event
 from muster.mission.mission_data import MissionData
 from muster.mission.robots import Robot
 from muster.mission.site import Point
@@ -50,6 +51,16 @@ def rules_of_tags(mission: MissionData) -> list[tuple[int, Found]]:
     return [(k, found) for k, found in enumerate(mission.found) if found.becomes is not None]
 
 
+def _event_places(k: int, event: Event) -> Iterator[tuple[Path, Point]]:
+    if event.robot_joins is not None:
+        yield ("events", k, "robot_joins", "position"), event.robot_joins.position
+    if event.new_task is not None:
+        yield from _places(("events", k, "new_task"), event.new_task)
+    for key, moved in (("move_task", event.move_task), ("robot_moved", event.robot_moved)):
+        if moved is not None:
+            yield ("events", k, key, "position"), moved.position
+
+
 def positions(mission: MissionData) -> Iterator[tuple[Path, Point]]:
     """Every position that a mission names, also in its events."""
     for k, robot in enumerate(mission.robots):
@@ -61,12 +72,7 @@ def positions(mission: MissionData) -> Iterator[tuple[Path, Point]]:
     for k, station in enumerate(mission.stations):
         yield ("stations", k, "position"), station.position
     for k, event in enumerate(mission.events):
-        if event.robot_joins is not None:
-            yield ("events", k, "robot_joins", "position"), event.robot_joins.position
-        if event.new_task is not None:
-            yield from _places(("events", k, "new_task"), event.new_task)
-        if event.move_task is not None:
-            yield ("events", k, "move_task", "position"), event.move_task.position
+        yield from _event_places(k, event)
     yield from _marks(mission)
     for k, found in rules_of_tags(mission):
         if found.becomes.action is not None:

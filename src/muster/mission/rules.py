@@ -18,8 +18,8 @@ class Rules(RuleKeys, bearer="rules"):
     min_suitability: float = spec(Number(minimum=0, maximum=1), "least suitability to be assigned", default=0.65)
     return_to_start: bool = spec(Flag(), "every robot goes back to its start", default=False)
     travel: str | None = spec(
-        Choice(("euclidean", "map", "matrix")),
-        "how travel is measured: euclidean without a map, else map",
+        Choice(("euclidean", "map", "lanes", "matrix")),
+        "how travel is measured: lanes where there are any, else euclidean without a map, else map",
         default=None,
     )
     capacity_reserve: float = spec(Number(minimum=0, below=1), "share of the work capacity kept free", default=0.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,11 @@ class Measured:
         by work class: for each task whose action has geometry the lengths of the legs between its way points.
     over_map
         whether they are of shortest ways over a map, which have bends.
+    seconds
+        of the shape of the table: how long ways take that are along lanes, and all ways beside them; empty where the
+        lengths tell.
+    driven_s
+        by work class: how long the work on tasks takes that is travel along lanes, seconds; empty without lanes.
     """
 
     table: Floats
@@ -33,6 +38,8 @@ class Measured:
     work_classes: npt.NDArray[np.int32]
     legs: tuple[Mapping[int, tuple[float, ...]], ...]
     over_map: bool = False
+    seconds: Floats = field(default_factory=lambda: np.empty(0))
+    driven_s: tuple[Mapping[int, float], ...] = ()
 
     def part(self, robots: Sequence[int], places: Sequence[int], tasks: Sequence[int]) -> Measured:
         """The lengths of some robots between some places, and of some tasks; with the classes of these robots alone."""
@@ -46,4 +53,8 @@ class Measured:
             work_classes.astype(np.int32),
             tuple({number_in[j]: m for j, m in self.legs[row].items() if j in number_in} for row in rows.tolist()),
             self.over_map,
+            self.seconds[tables][:, places][:, :, places] if len(self.seconds) else self.seconds,
+            tuple({number_in[j]: s for j, s in self.driven_s[row].items() if j in number_in} for row in rows.tolist())
+            if self.driven_s
+            else (),
         )

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from muster.mission.model import Robot
 from muster.mission.values.arrays import Floats
 from muster.model.lengths import Measured
 from muster.model.task_geometry import TaskGeometry
-from muster.motion.actions.action import Leg
-from muster.motion.map_world import Body, body_of
+from muster.motion.actions.action import Leg, TaskMotion
+from muster.motion.leg_times import LegTimes
+from muster.motion.map_world import Body
 from muster.motion.path import NoPath
 from muster.motion.paths.robot_paths import RobotPaths
 
@@ -27,8 +27,8 @@ class MapTravel:
     ----------
     robot_paths
         of the mission.
-    bodies
-        of each class of robots.
+    bodies, times
+        of each class of robots: their bodies, and how long legs take them.
     geometry
         entries, exits and costs of the tasks for each class of robots.
     exits, entries
@@ -37,15 +37,10 @@ class MapTravel:
 
     robot_paths: RobotPaths
     bodies: tuple[Body, ...]
+    times: tuple[LegTimes, ...]
     geometry: TaskGeometry
     exits: Floats
     entries: Floats
-
-    @classmethod
-    def of(
-        cls, robot_paths: RobotPaths, robots: Sequence[Robot], geometry: TaskGeometry, exits: Floats, entries: Floats
-    ) -> MapTravel:
-        return cls(robot_paths, tuple(body_of(robots[i]) for i in geometry.firsts), geometry, exits, entries)
 
     @cached_property
     def costs(self) -> Floats:
@@ -62,30 +57,52 @@ class MapTravel:
     @cached_property
     def legs(self) -> tuple[Mapping[int, tuple[float, ...]], ...]:
         """As `Measured.legs`; inf where there is no way."""
-        return self.geometry.legs(lambda k, leg: self.robot_paths.leg_m(self.bodies[k], *leg))
+        return self.geometry.legs(lambda k, leg, doing: self.robot_paths.leg_m(self._body(k, doing), *leg))
 
     def measured(self, threads: int) -> Measured:
         """All lengths."""
-        table = np.array([self.lengths(k, exits, threads) for k, exits in enumerate(self.exits)])
-        classes = self.geometry.classes
+        found = [self.lengths(k, exits, threads) for k, exits in enumerate(self.exits)]
+        classes, along_lanes = self.geometry.classes, self.robot_paths.lanes is not None
         legs = tuple({j: m for j, m in row.items() if math.isfinite(sum(m))} for row in self.legs)
         return Measured(
-            table,
+            np.array([metres for metres, _ in found]),
             classes,
             np.where(np.isinf(self.costs), 0.0, self.costs),
             classes,
             legs,
             over_map=not self.robot_paths.straight,
+            seconds=np.array([seconds for _, seconds in found]) if along_lanes else np.empty(0),
+            driven_s=tuple(map(self._driven_s, range(len(self.bodies)))) if along_lanes else (),
         )
 
-    def lengths(self, k: int, exits: Floats, threads: int) -> Floats:
-        """(q, p) metres for class k from exits (q, 3) to the entry of each place; inf where there is no way.
+    def lengths(self, k: int, exits: Floats, threads: int) -> tuple[Floats, Floats]:
+        """(q, p) metres, and seconds, for class k from exits (q, 3) to the entry of each place.
 
-        There is none to a task whose own way points cannot all be passed.
+        They are inf where there is no way, and to a task whose own way points cannot all be passed.
         """
-        metres = self.robot_paths.lengths(self.bodies[k], exits, self.entries[k], threads)
-        metres[:, np.flatnonzero(np.isinf(self.costs[k]))] = math.inf
-        return metres
+        entries = self.entries[k]
+        metres, seconds = self.robot_paths.measured(self.bodies[k], exits, entries, threads)
+        if seconds is None:
+            apart = entries[None] - exits[:, None]
+            with np.errstate(invalid="ignore"):  # there may be no way
+                seconds = self.times[k].seconds(metres, np.abs(apart[..., 2]), np.linalg.norm(apart, axis=2))
+            seconds = np.where(np.isinf(metres), math.inf, seconds)
+        cut_off = np.flatnonzero(np.isinf(self.costs[k]))
+        metres[:, cut_off] = seconds[:, cut_off] = math.inf
+        return metres, seconds
+
+    def _driven_s(self, k: int) -> Mapping[int, float]:
+        """For a class of robots as `Measured.driven_s`."""
+        body = self.bodies[k]
+        if body.times is None:
+            return {}
+        travels = {j: doing.legs for (c, j), doing in self.geometry.moving.items() if c == k and doing.is_travel}
+        seconds = {j: sum(self.robot_paths.leg_s(body, *leg) for leg in legs) for j, legs in travels.items()}
+        return {j: s for j, s in seconds.items() if math.isfinite(s)}
+
+    def _body(self, k: int, doing: TaskMotion) -> Body:
+        """The body of a class at work: beside the lanes, but where work is travel."""
+        return self.bodies[k] if doing.is_travel else self.bodies[k].off_lanes
 
     def why_not(self, i: int, start: int, end: int) -> str:
         """Why robot i has no way from one place to another."""
@@ -95,8 +112,8 @@ class MapTravel:
         if isinstance(found, NoPath):
             return f"{found.reason}: {found.detail}"
         doing = self.geometry.moving.get((k, end))
-        for leg in doing.legs if doing is not None else ():
-            found = self.robot_paths.path(body, *leg)
+        for own, leg in [(self._body(k, doing), leg) for leg in doing.legs] if doing is not None else ():
+            found = self.robot_paths.path(own, *leg)
             if isinstance(found, NoPath):
                 return f"{found.reason} on the way of its action: {found.detail}"
         if (k, end) in self._crossed:

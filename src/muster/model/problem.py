@@ -356,6 +356,7 @@ class Problem(TravelAndWork):
             place_class=self._task_geometry.classes,
             table=measured.table,
             travel_class=measured.classes,
+            seconds=measured.seconds,
             **core_arrays(self, self.leg_times),
             waiting=self.waiting.seconds,
             waits=self.waiting.robots,

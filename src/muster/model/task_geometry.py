@@ -5,7 +5,7 @@ Only tasks whose action has geometry differ between robots.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,15 +48,18 @@ class TaskGeometry:
     _impossible: Mapping[int, Mapping[int, str]]  # for the first robot of each shape the reasons by task
 
     @classmethod
-    def of(cls, robots: Sequence[Robot], tasks: Sequence[Task], *, by_body: bool) -> TaskGeometry:
-        """With `by_body` robots of different bodies are in different classes."""
+    def of(
+        cls, robots: Sequence[Robot], tasks: Sequence[Task], *, kinds: Sequence[Hashable] | None = None
+    ) -> TaskGeometry:
+        """The geometry for some robots; those of different `kinds`, one a robot, are in different classes."""
         moving = [j for j, task in enumerate(tasks) if task.action is not None and task.action.has_geometry]
         first_of: dict[object, int] = {}
-        shapes = [_shape(robot) if moving or by_body else None for robot in robots]
+        own: Sequence[Hashable] = kinds or [None] * len(robots)
+        shapes = [(_shape(robot), kind) if moving or kind else None for robot, kind in zip(robots, own, strict=True)]
         like = tuple(first_of.setdefault(shape, i) for i, shape in enumerate(shapes))
         found = {i: {j: plan(tasks[j], robots[i]) for j in moving} for i in first_of.values()}
         done = _completed(found)
-        keys = {i: (_body(robots[i]) if by_body else None, tuple(d.points for d in done[i].values())) for i in done}
+        keys = {i: (own[i], tuple(doing.points for doing in done[i].values())) for i in done}
         numbers = {key: k for k, key in enumerate(dict.fromkeys(keys.values()))}
         classes = np.array([numbers[keys[i]] for i in like], dtype=np.int32)
         firsts = tuple(int(np.argmax(classes == k)) for k in range(len(numbers)))
@@ -70,11 +73,11 @@ class TaskGeometry:
             costs[at] = doing.cost_m
         return cls(classes, firsts, entries, exits, costs, by_class, like, _reasons(found))
 
-    def legs(self, length: Callable[[int, Leg], float]) -> tuple[Mapping[int, tuple[float, ...]], ...]:
-        """By class: for each task with geometry the lengths of its legs; `length` is of a class and a leg."""
+    def legs(self, length: Callable[[int, Leg, TaskMotion], float]) -> tuple[Mapping[int, tuple[float, ...]], ...]:
+        """By class: for each task with geometry the lengths of its legs; `length` is of a class, a leg and the work."""
         rows: tuple[dict[int, tuple[float, ...]], ...] = tuple({} for _ in self.firsts)
         for (k, j), doing in self.moving.items():
-            rows[k][j] = tuple(length(k, leg) for leg in doing.legs)
+            rows[k][j] = tuple(length(k, leg, doing) for leg in doing.legs)
         return rows
 
     def refusal(self, i: int, j: int) -> str | None:
@@ -98,10 +101,6 @@ def _completed(found: Mapping[int, Mapping[int, TaskMotion | Impossible]]) -> di
 
 def _reasons(found: Mapping[int, Mapping[int, TaskMotion | Impossible]]) -> dict[int, dict[int, str]]:
     return {i: {j: own.reason for j, own in row.items() if isinstance(own, Impossible)} for i, row in found.items()}
-
-
-def _body(robot: Robot) -> tuple[float, str]:
-    return robot.radius_m, robot.kind
 
 
 def _shape(robot: Robot) -> tuple[object, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -105,6 +105,9 @@ class TravelAndWork:
         return np.asarray(self._driving_seconds(i, places, to) + self.waiting.of(i, places, to))
 
     def _driving_seconds(self, i: int, places: Sequence[int] | Indices, to: Sequence[int] | Indices) -> Floats:
+        if len(self.measured.seconds):
+            table = self.measured.seconds[self.measured.classes[i]]
+            return np.asarray(table[np.asarray(places, np.int64)[:, None], np.asarray(to, np.int64)[None]])
         metres, profile = self.metres(i, places, to), self.leg_times[i]
         if profile.is_constant:
             return np.asarray(metres / profile.speed_mps)
@@ -115,7 +118,7 @@ class TravelAndWork:
     @cached_property
     def leg_times(self) -> tuple[LegTimes, ...]:
         """For each robot how long legs take."""
-        over_map = self.mission.travel_rule == "map" if self.known is None else self.known.over_map
+        over_map = self.mission.travel_off_lanes == "map" if self.known is None else self.known.over_map
         return tuple(LegTimes.of(robot, self.mission.rules, over_map=over_map) for robot in self.robots)
 
     def work_usage(self, i: int) -> Floats:
@@ -184,24 +187,31 @@ class TravelAndWork:
         else:
             table = straight_table(self.mission, self._exits, self._entries)
             classes = geometry.classes if len(table) else none
-        legs = geometry.legs(lambda _, leg: math.dist(*leg))
+        legs = geometry.legs(lambda _, leg, doing: math.dist(*leg))
         return Measured(table, classes, geometry.costs, geometry.classes, legs)
 
     @cached_property
     def _task_geometry(self) -> TaskGeometry:
-        return TaskGeometry.of(self.robots, self.tasks, by_body=self.has_paths)
+        return TaskGeometry.of(self.robots, self.tasks, kinds=self._bodies if self.has_paths else None)
+
+    @cached_property
+    def _bodies(self) -> list[Hashable]:
+        """What ways depend on, of each robot: its body, and with lanes how long legs take it."""
+        if self.mission.driven_lanes is None:
+            return [body_of(robot) for robot in self.robots]
+        return [(body_of(robot), LegTimes.in_mission(robot, self.mission)) for robot in self.robots]
 
     @cached_property
     def has_paths(self) -> bool:
-        """Whether legs are paths over the map: shortest ones, or straight ones that closed areas may cross."""
+        """Whether legs are paths: along lanes, shortest ones, or straight ones that closed areas may cross."""
         if not self.mission.has_straight_legs_among_areas:
-            return self.mission.travel_rule == "map"
+            return self.mission.has_paths
         return not all(self.robot_paths.is_open(body_of(robot), self._all_points) for robot in self.robots)
 
     @cached_property
     def _all_points(self) -> Floats:
         """(k, 3) metres, map frame: where legs and the work on tasks begin and end."""
-        geometry = TaskGeometry.of(self.robots, self.tasks, by_body=False)
+        geometry = TaskGeometry.of(self.robots, self.tasks)
         passed = [(*point, 0.0)[:3] for doing in geometry.moving.values() for point in doing.points]
         places = [self._with_robots(geometry.entries), self._with_robots(geometry.exits), np.array(passed, np.float64)]
         return np.concatenate([part.reshape(-1, 3) for part in places])
@@ -222,9 +232,14 @@ class TravelAndWork:
         """Travel between the places by paths over the map, whatever the mission's rule."""
         from muster.model.map_travel import MapTravel
 
-        geometry = self._task_geometry if self.has_paths else TaskGeometry.of(self.robots, self.tasks, by_body=True)
+        geometry = self._task_geometry
+        if not self.has_paths:
+            geometry = TaskGeometry.of(self.robots, self.tasks, kinds=self._bodies)
+        firsts = [self.robots[i] for i in geometry.firsts]
+        bodies = tuple(body_of(robot, self.mission) for robot in firsts)
+        times = tuple(LegTimes.in_mission(robot, self.mission) for robot in firsts)
         exits, entries = self._with_robots(geometry.exits), self._with_robots(geometry.entries)
-        return MapTravel.of(robot_paths, self.robots, geometry, exits, entries)
+        return MapTravel(robot_paths, bodies, times, geometry, exits, entries)
 
     def no_way_to(self, i: int, j: int) -> str:
         """Why robot i has no path to task j, or along its way points."""

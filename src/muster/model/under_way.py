@@ -6,7 +6,7 @@ No travel is looked up, so that it is cheap to compile the rules again whenever 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Container, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from operator import is_not
 
@@ -66,6 +66,25 @@ class Missed:
     next_s: float | None = None
 
 
+class _Group:
+    """Tasks that were compiled together: of those of another group nothing is said in their terms."""
+
+    def __init__(self, names: list[str], model: PlanModel) -> None:
+        self.names, self.model = names, model
+        self.soon_after: dict[int, list[int]] = {}
+        for j, gaps in model.parts.gaps.items():
+            for k in (k for k, (_, most_s) in gaps.items() if most_s < math.inf):
+                self.soon_after.setdefault(k, []).append(j)
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether more than the order of tasks says when any of them may begin, or several robots do one."""
+        parts = self.model.parts
+        gaps = (gap for own in parts.gaps.values() for gap in own.values())
+        bound = parts.openings or parts.ends_by or parts.together or self.model.with_teams
+        return bool(bound) or any(gap != (0.0, math.inf) for gap in gaps)
+
+
 @dataclass(eq=False)
 class UnderWay:
     """What rules ask of the tasks of a mission under way.
@@ -87,30 +106,36 @@ class UnderWay:
     _lacking: dict[str, tuple[Sequence[object], str]] = field(default_factory=dict)  # as last asked about each task
 
     def __post_init__(self) -> None:
-        self._names = [task.id for task in self.tasks]
-        self._index = {name: j for j, name in enumerate(self._names)}
-        self._model = self._compiled(
-            tuple(task.waiting_for(filter(self._index.__contains__, task.prerequisites)) for task in self.tasks),
-            self.mission.robots,
-        )
-        self._soon_after: dict[int, list[int]] = {}
-        for j, gaps in self._model.parts.gaps.items():
-            for k in (k for k, (_, most_s) in gaps.items() if most_s < math.inf):
-                self._soon_after.setdefault(k, []).append(j)
+        self._of: dict[str, tuple[_Group, int]] = {}
+        self._timed: list[_Group] = []
+        self._exclusive: list[_Group] = []
+        there = {task.id for task in self.tasks}
+        self._add(task.waiting_for(filter(there.__contains__, task.prerequisites)) for task in self.tasks)
 
-    def _compiled(self, tasks: tuple[Task, ...], robots: Sequence[Robot]) -> PlanModel:
+    def add(self, task: Task) -> None:
+        """Add a task that names no other. It is compiled by itself, so it costs as much however many there are."""
+        self._add([task.waiting_for(())])
+
+    def _add(self, tasks: Iterable[Task]) -> None:
+        added = tuple(tasks)
+        group = _Group([task.id for task in added], self._problem(added, self.mission.robots).model)
+        self._of |= {name: (group, j) for j, name in enumerate(group.names)}
+        if group.is_timed:
+            self._timed.append(group)
+        if group.model.parts.exclusive:
+            self._exclusive.append(group)
+
+    def _problem(self, tasks: tuple[Task, ...], robots: Sequence[Robot]) -> Problem:
         mission, ignored = self.mission, tuple(self.ignored)
         objective = mission.rules.objective
-        return Problem(mission=mission, objective=objective, ignored=ignored, robots=tuple(robots), tasks=tasks).model
+        return Problem(mission=mission, objective=objective, ignored=ignored, robots=tuple(robots), tasks=tasks)
 
     # What is asked of a task, whatever has happened.
 
     @property
     def is_timed(self) -> bool:
         """Whether more than the order of tasks says when any of them may begin, or several robots do one."""
-        parts = self._model.parts
-        bound = parts.openings or parts.ends_by or parts.together or self._model.with_teams
-        return bool(bound) or any(map(self.gaps, self._names))
+        return bool(self._timed)
 
     def is_bound(self, task: str) -> bool:
         """Whether more than the order of tasks says when a task, or one that begins with it, may begin."""
@@ -123,20 +148,21 @@ class UnderWay:
 
     def is_for_team(self, task: str) -> bool:
         """Whether several robots may have to do a task."""
-        return self._model.is_for_team(self._index[task])
+        group, j = self._of[task]
+        return group.model.is_for_team(j)
 
     def unit(self, task: str) -> tuple[str, ...]:
         """The tasks that begin together with a task, itself included."""
-        model = self._model
-        return tuple(self._names[j] for j in model.units[model.unit[self._index[task]]])
+        group, j = self._of[task]
+        return tuple(group.names[k] for k in group.model.units[group.model.unit[j]])
 
     def before(self, task: str) -> dict[str, tuple[float, float]]:
         """The tasks that end before a task begins; how long before that at least, and at most."""
-        j = self._index[task]
-        gaps, pickup = dict(self._model.parts.gaps.get(j, {})), self._model.pickups[j]
+        group, j = self._of[task]
+        gaps, pickup = dict(group.model.parts.gaps.get(j, {})), group.model.pickups[j]
         if pickup >= 0:
             gaps.setdefault(pickup, (0.0, math.inf))
-        return {self._names[k]: gap for k, gap in gaps.items()}
+        return {group.names[k]: gap for k, gap in gaps.items()}
 
     def gaps(self, task: str) -> dict[str, tuple[float, float]]:
         """The same of those tasks alone for which more is said than the order."""
@@ -144,63 +170,66 @@ class UnderWay:
 
     def soon_after(self, tasks: Collection[str]) -> list[str]:
         """The tasks that must begin within some time after one of these."""
-        found = (j for name in tasks for j in self._soon_after.get(self._index[name], ()))
-        return [self._names[j] for j in dict.fromkeys(found)]
+        of = [self._of[name] for name in tasks]
+        return list(dict.fromkeys(group.names[k] for group, j in of for k in group.soon_after.get(j, ())))
 
     def delivers(self, task: str, pickup: str) -> bool:
         """Whether a task delivers what another takes on board."""
-        return self._model.pickups[self._index[task]] == self._index[pickup]
+        (group, j), (group_of_pickup, k) = self._of[task], self._of[pickup]
+        return group is group_of_pickup and group.model.pickups[j] == k
 
     def too_long_between(self, task: str, after: str, takes_s: float) -> str:
         """Why a task cannot begin soon enough after another, which takes so long at least; empty: it can."""
         most_s = self.before(after)[task][1]
         if takes_s <= most_s + TIME_ROUNDING_S:
             return ""
-        word = self._model.given_by("gaps", self._index[task], self._index[after])
+        word = self._giver("gaps", task, after)
         way = f"the way on board from the end of {task} to the begin of {after}"
         return f"{word}: {way} takes at least {takes_s:,.1f} s; expected at most {most_s:,g} s"
 
     def by_the_same(self, task: str) -> list[str]:
         """The tasks that the robots of a task do, if they are done."""
-        return [self._names[k] for k in self._model.same_crew[self._index[task]]]
+        group, j = self._of[task]
+        return [group.names[k] for k in group.model.same_crew[j]]
 
     def by_others(self, task: str) -> list[str]:
         """The tasks that none of the robots of a task does."""
-        return [self._names[k] for k in self._model.apart[self._index[task]]]
+        group, j = self._of[task]
+        return [group.names[k] for k in group.model.apart[j]]
 
     def alternatives(self, task: str) -> list[str]:
         """The tasks of which none is done if a task is."""
-        return [self._names[k] for k in self._model.exclusive[self._index[task]]]
+        group, j = self._of[task]
+        return [group.names[k] for k in group.model.exclusive[j]]
 
     def replaced(self, begun: Container[str], over: Container[str]) -> dict[str, str]:
         """The tasks in whose place another is done, which has begun; and why they are not done.
 
         What delivers what a task took on that has begun is to be done, if it is not over for another reason.
         """
-        excluding, pickups = self._model.parts.exclusive, self._model.pickups
-        word, found = self._model.word_of("exclusive"), {}
-        for j in excluding:
-            if self._names[j] not in begun:
-                others = (k for k in self._model.exclusive[j] if self._is_chosen(k, pickups[k], begun, over))
+        found = {}
+        for group in self._exclusive:
+            word, pickups = group.model.word_of("exclusive"), group.model.pickups
+            for j in (j for j in group.model.parts.exclusive if group.names[j] not in begun):
+                others = (k for k in group.model.exclusive[j] if _is_chosen(group, k, pickups[k], begun, over))
                 if (other := next(others, None)) is not None:
-                    found[self._names[j]] = f"{word}: {self._names[other]} is {IN_ITS_PLACE}"
+                    found[group.names[j]] = f"{word}: {group.names[other]} is {IN_ITS_PLACE}"
         return found
 
-    def _is_chosen(self, j: int, pickup: int, begun: Container[str], over: Container[str]) -> bool:
-        """Whether a task has begun, or delivers what is on board."""
-        name = self._names[j]
-        return name in begun or (pickup >= 0 and self._names[pickup] in begun and name not in over)
-
-    def _giver(self, limit: str, task: str) -> str:
-        return self._model.given_by(limit, self._index[task])
+    def _giver(self, limit: str, *tasks: str) -> str:
+        """The word of the rule whose bound of a task, or of two, holds."""
+        group, _ = self._of[tasks[0]]
+        return group.model.given_by(limit, *(self._of[task][1] for task in tasks))
 
     def openings(self, task: str) -> Openings:
         """When a task may begin; empty: at any time."""
-        return self._model.openings[self._index[task]]
+        group, j = self._of[task]
+        return group.model.openings[j]
 
     def ends_by_s(self, task: str) -> float:
         """When a task has ended at the latest; inf: whenever."""
-        return float(self._model.ends_by[self._index[task]])
+        group, j = self._of[task]
+        return float(group.model.ends_by[j])
 
     def last_begin_s(self, task: str) -> float:
         """The latest time at which a task may begin, travel and work not counted; inf: whenever."""
@@ -215,7 +244,7 @@ class UnderWay:
         """What is asked of a robot, of the mission or not."""
         known = self._limits.get(robot.id)
         if known is None or known[0] is not robot:
-            limits = RobotLimits.of(self._compiled((), (robot,)), self.mission.stations)
+            limits = RobotLimits.of(self._problem((), (robot,)).model, self.mission.stations)
             known = self._limits[robot.id] = robot, limits
         return known[1]
 
@@ -263,8 +292,8 @@ class UnderWay:
                 yield self._missed("gaps", task, words, before)
 
     def _missed(self, limit: str, task: str, words: str, before: str | None = None) -> Missed:
-        at = [self._index[name] for name in (before, task) if name is not None]
-        return Missed(limit, f"{self._model.given_by(limit, *at)}: {words}")
+        at = [name for name in (before, task) if name is not None]
+        return Missed(limit, f"{self._giver(limit, *at)}: {words}")
 
     def missed_opening(self, task: str, meant_s: float, now: float) -> Missed | None:
         """That the opening in which a task was meant to begin is over, and another one is to come; None: it is not."""
@@ -322,7 +351,7 @@ class UnderWay:
         return known[1]
 
     def _lack(self, task: Task, robots: Sequence[Robot]) -> str:
-        model = self._compiled((task.waiting_for(()),), robots)
+        model = self._problem((task.waiting_for(()),), robots).model
         if sums := model.sums(0):
             have = ((name, float(able.sum()), needed) for name, (needed, able) in sums.items())
             short = [f"{has:g} of {needed:g} {name}" for name, has, needed in have if has < needed * (1 - _ROUNDING)]
@@ -335,8 +364,19 @@ class UnderWay:
 
     def crew_size(self, task: str) -> int | None:
         """How many robots do a task; None: as many as are able enough together."""
-        j = self._index[task]
-        return None if self._model.sums(j) else sum(count for count, _ in self._model.seats(j))
+        group, j = self._of[task]
+        return None if group.model.sums(j) else sum(count for count, _ in group.model.seats(j))
+
+    def able(self, task: Task, robots: Sequence[Robot]) -> list[str]:
+        """The robots that may do a task, as one of several if need be: skills, suitability, locks, and its action."""
+        allowed = self._problem((task.waiting_for(()),), robots).allowed[:, 0]
+        return [robot.id for robot, may in zip(robots, allowed.tolist(), strict=True) if may]
+
+
+def _is_chosen(group: _Group, j: int, pickup: int, begun: Container[str], over: Container[str]) -> bool:
+    """Whether a task has begun, or delivers what is on board."""
+    name = group.names[j]
+    return name in begun or (pickup >= 0 and group.names[pickup] in begun and name not in over)
 
 
 def _opens(openings: Openings, now: float) -> float:

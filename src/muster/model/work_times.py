@@ -33,8 +33,8 @@ def work_times(
     Returns
     -------
     seconds
-        (time classes, n): the duration by the robot's efficiency where one is given; else the time of the profile
-        along the way points of the task's action; else the cost by the robot's speed.
+        (time classes, n): the duration by the robot's efficiency where one is given; else the time along lanes, or of
+        the profile along the way points of the task's action; else the cost by the robot's speed.
     classes
         (m,) each robot's class.
     """
@@ -47,5 +47,7 @@ def work_times(
         if not profile.is_constant:
             for j, metres in measured.legs[work].items():
                 row[j] = profile.work_seconds(geometry.moving[place, j].points, metres)
+        for j, seconds in measured.driven_s[work].items() if measured.driven_s else ():
+            row[j] = seconds
         row[:] = np.where(np.isnan(durations), row, durations / efficiency)
     return rows, np.array([number[key] for key in keys], dtype=np.int32)

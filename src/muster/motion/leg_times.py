@@ -38,6 +38,8 @@ class LegTimes:
         turns come to on average.
     over_map
         whether a leg that is longer than the straight line between its ends has bends. In travel tables it has none.
+    along_lanes
+        whether the robot travels along lanes, so that speeds and bends of its ways are known.
     """
 
     speed_mps: float
@@ -45,13 +47,14 @@ class LegTimes:
     climb_mps: float = math.inf
     turn_s: float = 0.0
     over_map: bool = False
+    along_lanes: bool = False
 
     @classmethod
-    def of(cls, robot: Robot, rules: Rules, *, over_map: bool) -> LegTimes:
+    def of(cls, robot: Robot, rules: Rules, *, over_map: bool, along_lanes: bool = False) -> LegTimes:
         climb = robot.climb_mps if robot.kind == "air" else None
         stated = (robot.acceleration_mps2, robot.yaw_rate_radps, climb)
         if rules.timing == "constant" or stated == (None, None, None):
-            return cls(robot.speed_mps)
+            return cls(robot.speed_mps, along_lanes=along_lanes)
         limits = limits_of(robot)
         turns = kinematics_named(robot.kinematics).faces_its_way
         return cls(
@@ -60,18 +63,20 @@ class LegTimes:
             math.inf if climb is None else climb,
             _RIGHT_ANGLE / limits.yaw_rate_radps if turns else 0.0,
             over_map=over_map,
+            along_lanes=along_lanes,
         )
 
     @classmethod
     def in_mission(cls, robot: Robot, mission: Mission) -> LegTimes:
         """By the mission's own rules and travel."""
-        return cls.of(robot, mission.rules, over_map=mission.travel_rule == "map")
+        along_lanes = mission.driven_lanes is not None and robot.kind == "ground"
+        return cls.of(robot, mission.rules, over_map=mission.travel_off_lanes == "map", along_lanes=along_lanes)
 
     @cached_property
     def is_constant(self) -> bool:
         """Whether the time is proportional to the length."""
         unlimited = self.acceleration_mps2 == math.inf and self.climb_mps == math.inf
-        return unlimited and self.turn_s == 0.0 and not self.over_map
+        return unlimited and self.turn_s == 0.0 and not self.over_map and not self.along_lanes
 
     def seconds(self, metres: Any, rise_m: Any = 0.0, apart_m: Any = math.inf) -> Any:
         """The time of legs; shapes as NumPy's.
@@ -102,11 +107,45 @@ class LegTimes:
 
     def rest_seconds(self, metres: float, rise_m: float = 0.0, apart_m: float = math.inf) -> float:
         """The time of the rest of a leg for a robot under way: it need not turn nor gather speed any more."""
-        whole = float(self.seconds(metres, rise_m, apart_m))
+        return self.under_way(float(self.seconds(metres, rise_m, apart_m)), metres)
+
+    def under_way(self, whole_s: float, metres: float) -> float:
+        """Return what a leg of so many metres, which takes a time from rest to rest, takes a robot under way."""
         if self.is_constant or metres <= 0:
-            return whole
+            return whole_s
         to_speed = (2.0 - math.sqrt(2.0)) * math.sqrt(metres / self.acceleration_mps2)
-        return whole - self.turn_s - min(self.speed_mps / self.acceleration_mps2 / 2, to_speed)
+        return max(0.0, whole_s - self.turn_s - min(self.stop_s / 2, to_speed))
+
+    @property
+    def stop_s(self) -> float:
+        """What a stop on the way costs: of a bend by a right angle or more."""
+        return self.speed_mps / self.acceleration_mps2
+
+    def bend_s(self, angle_rad: float) -> float:
+        """What a bend on the way along lanes costs, as traffic reckons it: slowing down as it must, and turning."""
+        share = angle_rad / _RIGHT_ANGLE
+        return share * self.turn_s + min(1.0, share) * self.stop_s
+
+    def lane_seconds(self, metres: Any, driven_s: Any) -> Any:
+        """The time of legs along lanes; shapes as NumPy's.
+
+        Parameters
+        ----------
+        metres
+            their lengths.
+        driven_s
+            what they take at the speeds of robot and lanes, bends included; inf where there is no way.
+        """
+        with np.errstate(invalid="ignore"):  # there may be no way
+            ramps = self._ramped(metres, 0.0) - metres / self.speed_mps
+        return np.where((metres > 0) & np.isfinite(metres), driven_s + ramps + self.turn_s, driven_s)
+
+    def way_seconds(self, places: Sequence[Point], speeds_mps: Sequence[float]) -> float:
+        """Return the time of a way along lanes through places, with the greatest speed on each of its pieces."""
+        legs = [(a, b, v) for (a, b), v in zip(pairwise(places), speeds_mps, strict=True) if a != b]
+        driven_s = sum(math.dist(a, b) / min(v, self.speed_mps) for a, b, v in legs)
+        bends_s = sum(self.bend_s(_turn(a, b, c)) for (a, b, _), (_, c, _) in pairwise(legs))
+        return float(self.lane_seconds(sum(math.dist(a, b) for a, b, _ in legs), driven_s + bends_s))
 
     def least_seconds(self, metres: float, rise_m: float = 0.0) -> float:
         """The least time of a leg: without any turn."""

@@ -24,6 +24,7 @@ from muster.mission.records import findings
 from muster.mission.value_types import Fault
 from muster.motion.free_space import GridSpace, PolygonSpace, Prism, PrismSpace, Space
 from muster.motion.grid import Floats, Grid
+from muster.motion.leg_times import LegTimes
 from muster.motion.maps.distances import clearance_to_blocked, inflated
 from muster.motion.maps.narrow_places import necks
 from muster.motion.maps.occupancy_rules import read_grid
@@ -40,15 +41,28 @@ _FAR_M, _FAR = 1000.0, 10.0  # m, and of the extent: beyond all places, where th
 
 @dataclass(frozen=True)
 class Body:
-    """The properties of a robot that matter for a map: `radius_m` and `kind` (`ground` or `air`)."""
+    """The properties of a robot that matter for its ways: `radius_m`, `kind` (`ground` or `air`), `times` along lanes.
+
+    Parameters
+    ----------
+    times
+        by which it chooses among ways along lanes; None where it keeps to none.
+    """
 
     radius_m: float
     kind: str
+    times: LegTimes | None = None
+
+    @property
+    def off_lanes(self) -> Body:
+        """The body of the robot where it keeps to no lanes."""
+        return self if self.times is None else replace(self, times=None)
 
 
-def body_of(robot: Robot) -> Body:
-    """The body of a robot."""
-    return Body(robot.radius_m, robot.kind)
+def body_of(robot: Robot, mission: Mission | None = None) -> Body:
+    """Return the body of a robot; for its ways along lanes that of a robot in its mission."""
+    times = None if mission is None else LegTimes.in_mission(robot, mission)
+    return Body(robot.radius_m, robot.kind, times if times is not None and times.along_lanes else None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +97,7 @@ class World:
     image
         the cells of a map that is an image, without zones; None for a map of polygons.
     boundary
-        the arena of a map of polygons; None for an image.
+        the arena of a map of polygons; None for an image, and where there is no map.
     areas
         the zones.
     closed
@@ -143,7 +157,9 @@ class World:
         MissionError, MissingExtraError, ParameterError
             as `World.of`.
         """
-        if mission.map is None or mission.map.boundary is not None or mission.travel_rule == "map":
+        if mission.map is None and mission.driven_lanes is not None:
+            return cls(*_extent(mission), None, None, ())
+        if mission.map is None or mission.map.boundary is not None or mission.travel_off_lanes == "map":
             return cls.of(mission)
         require_map_extra()
         faults: list[Fault] = []
@@ -154,6 +170,11 @@ class World:
             c for zone in mission.map.zones for c in zone.polygon
         ]
         return cls(*_extent(mission), None, _far_around(corners), areas, _closed(areas), is_unbounded=True)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is no map: nothing stops a robot."""
+        return self.image is None and self.boundary is None
 
     def with_closed(self, closed: Collection[str]) -> World:
         """The world when these of its zones that have an id are closed, and the others of them open."""

@@ -18,9 +18,10 @@ class Outlook(NamedTuple):
     """Where a robot will go after where it has been sent.
 
     `stays`: whether it stays for good at the last of all; `gone`: whether it is not to be sent anywhere now, as it has
-    failed or is not heard.
+    failed or is not heard; `removed`: whether it was taken away, and is nowhere.
     """
 
     visits: tuple[Visit, ...] = ()
     stays: bool = False
     gone: bool = False
+    removed: bool = False

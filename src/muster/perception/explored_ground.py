@@ -11,11 +11,9 @@ those that may be free.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -30,9 +28,7 @@ from muster.motion.paths import PathFinder
 from muster.motion.paths.on_grid import without_repetitions
 from muster.motion.paths.planner import disconnected, not_free
 from muster.perception.occupancy_map import OccupancyMap
-
-if TYPE_CHECKING:
-    from scipy.spatial import KDTree
+from muster.perception.tight_ways import in_the_middle
 
 CERTAIN, POSSIBLE = PASSES = (1, -1)
 """The two passes: which cells count as free."""
@@ -43,8 +39,6 @@ _SNAP_CELLS = 4
 """Cells between a place that is free and the nearest cell that is free for certain, at most."""
 _TRIED = 50
 """Cells to which an end of a way may be joined, at most."""
-_PUSH, _PUSHES = 0.1, 20
-"""Of a cell by which ways are pushed to the middle of what is narrow at a time, and how often."""
 _FITS = 0.98
 """Of its radius that a body needs on both sides, where points of obstacles are all that is known of them."""
 _SLACK = 1e-6
@@ -87,9 +81,9 @@ def frame_of(world: World, radius_m: float) -> Grid:
     return Grid(np.zeros(size, dtype=np.bool_), cell_m, (west, south, 0.0))
 
 
-def map_to_build(world: World, radii_m: Collection[float]) -> OccupancyMap:
-    """Return an empty map of a world for bodies of some radii."""
-    frame = frame_of(world, min(radii_m))
+def map_to_build(world: World, radii_m: Collection[float], frame: Grid | None = None) -> OccupancyMap:
+    """Return an empty map of a world for bodies of some radii, in the cells of `frame_of` unless others are given."""
+    frame = frame_of(world, min(radii_m)) if frame is None else frame
     return OccupancyMap(frame, max(radii_m) + 2 * frame.resolution_m, fills_cells=world.image is not None)
 
 
@@ -145,28 +139,12 @@ class ExploredGround:
         finder = self._finder(body, POSSIBLE)
         tree = self.seen.tree()
         while (points := finder.way(start, goal)) is not None:
-            points, narrow = self._in_the_middle(body, points, tree)
+            cell_m = self.seen.frame.resolution_m
+            points, narrow = in_the_middle(points, tree, cell_m, body.radius_m + _SPARE * cell_m, body.radius_m * _FITS)
             if not len(narrow):
                 return points
             finder = self._made[body, POSSIBLE] = finder.without(narrow)
         return None
-
-    def _in_the_middle(self, body: Body, points: Floats, tree: KDTree) -> tuple[Floats, Floats]:
-        """Push a way off what is too near; return it, and its places (n, 2) at which the body does not fit."""
-        cell_m = self.seen.frame.resolution_m
-        points = _dense(points, cell_m)
-        away, _ = tree.query(points)
-        near = np.flatnonzero(away < body.radius_m + _SPARE * cell_m)
-        near = near[(near > 0) & (near < len(points) - 1)]
-        for _ in range(_PUSHES):
-            away, nearest = tree.query(points[near])
-            short = away < body.radius_m + _SPARE * cell_m
-            if not short.any():
-                break
-            off = points[near] - tree.data[nearest]
-            points[near[short]] += (_PUSH * cell_m / np.maximum(away, 1e-9))[short, None] * off[short]
-        away, _ = tree.query(points[near])
-        return points, points[near[away < body.radius_m * _FITS]]
 
     def lengths(self, body: Body, exits: Floats, entries: Floats) -> Floats:
         """Return the lengths (n, m) of ways from exits (n, d) to entries (m, d), metres; inf where there is none."""
@@ -198,7 +176,8 @@ class ExploredGround:
         return bool(self.seen.from_line_m(points, cells).min() >= max(body.radius_m - spare, 0.0))
 
     def is_free(self, body: Body, points: Floats) -> bool:
-        """Return whether a body can stand at points (k, 2), and go straight from each to the next."""
+        """Return whether a body can stand at points (k, d), and go straight from each to the next."""
+        points = points[:, :2]
         return all(self.stands(body, point) for point in points) and (
             len(points) < 2 or self._finder(body, POSSIBLE).sees(points)
         )
@@ -208,7 +187,7 @@ class ExploredGround:
         return ~self._finder(body, certainty).blocked
 
     def _may_be(self, body: Body, places: Floats) -> Bools:
-        return free(self.rules.free_space(body.radius_m, body.kind, False), places)
+        return free(self.rules.free_space(body.radius_m, body.kind), places)
 
     def _finder(self, body: Body, certainty: int) -> _Finder:
         key = (body, certainty)
@@ -235,7 +214,7 @@ class ExploredGround:
 
             frame = self.seen.frame
             radius_m = body.radius_m - (2 * _HALF * frame.resolution_m if certainty == POSSIBLE else 0.0)
-            space = self.rules.free_space(max(radius_m, 0.0), body.kind, False)
+            space = self.rules.free_space(max(radius_m, 0.0), body.kind)
             assert isinstance(space, PolygonSpace)
             rows, columns = frame.shape
             beyond = shapely.difference(shapely.box(0, 0, columns, rows), in_cells(space.region, frame))
@@ -307,12 +286,3 @@ class _Finder:
         height, width = self.blocked.shape
         away = self._clearances[np.clip(cells[:, 0], 0, height - 1), np.clip(cells[:, 1], 0, width - 1)]
         return bool(away.min() >= away[0] - 1.5 * self._grid.resolution_m)
-
-
-def _dense(points: Floats, step_m: float) -> Floats:
-    """Return points (n, 2) on a line, not farther apart than a step."""
-    pieces = [
-        np.linspace(a, b, max(1, math.ceil(math.dist(a, b) / step_m)), endpoint=False)
-        for a, b in itertools.pairwise(points)
-    ]
-    return np.concatenate([*pieces, points[-1:]])

@@ -101,16 +101,23 @@ class OccupancyMap:
         known: Bools = (self.hits > 0) | (self.passes > 0)
         return known
 
-    def see(self, scan: Scan, scanner: Scanner, near_m: float = 0.0) -> tuple[Indices, bool]:
-        """Enter a scan; cells that it sees within `near_m` count as near.
+    def see(self, scan: Scan, scanner: Scanner, near_m: float = 0.0, *, passes: bool = True) -> tuple[Indices, bool]:
+        """Enter a scan; cells that it sees within `near_m` count as near. Without `passes` only its hits count.
 
         Returns
         -------
         the cells (n, 2), rows and columns, that it found to be occupied and were not; and whether the map of obstacles
         changed at all.
         """
-        freed = self._pass(scan, scanner, near_m)
-        points, inner = _hit_points(scan, scanner)
+        freed = passes and self._pass(scan, scanner, near_m)
+        if freed:
+            self.clearances[:] = np.inf
+            self._keep_off(np.argwhere(self.occupied))
+        fresh = self.hit(*_hit_points(scan, scanner))
+        return fresh, freed or len(fresh) > 0
+
+    def hit(self, points: Floats, inner: Floats) -> Indices:
+        """Enter points (n, 2) of obstacles, whose cells are looked up a little way on; return newly occupied cells."""
         columns, rows = np.floor(self.frame.to_grid(inner)).astype(np.int64).T
         height, width = self.frame.shape
         within = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
@@ -118,15 +125,23 @@ class OccupancyMap:
         np.add.at(self.hits, (rows, columns), 1)
         np.add.at(self._sums, (rows, columns), points[within])
         touched = np.column_stack(np.divmod(np.unique(rows * width + columns), width))
-        now = _are_occupied(self.hits[tuple(touched.T)], self.passes[tuple(touched.T)])
-        fresh = touched[now & ~self.occupied[tuple(touched.T)]]
+        now = are_occupied(self.hits[tuple(touched.T)], self.passes[tuple(touched.T)])
+        fresh: Indices = touched[now & ~self.occupied[tuple(touched.T)]]
         self.occupied[tuple(fresh.T)] = True
-        if freed:
-            self.clearances[:] = np.inf
-            self._keep_off(np.argwhere(self.occupied))
-        else:
-            self._keep_off(fresh)
-        return fresh, freed or len(fresh) > 0
+        self._keep_off(fresh)
+        return fresh
+
+    def note_free(self, cells: Bools) -> None:
+        """Count cells that were not seen as passed once: others have found them to be free."""
+        self.passes[cells & (self.passes == 0) & (self.hits == 0)] = 1
+
+    def note_near(self, place: Floats, near_m: float) -> None:
+        """Count the known cells within a distance of a place (2,) as seen from near."""
+        cells = near_m / self.frame.resolution_m
+        column, row = self.frame.to_grid(place[None])[0]
+        rows, columns = (np.arange(n) + 0.5 for n in self.frame.shape)
+        within = np.hypot(rows[:, None] - row, columns - column) <= cells
+        self.near |= within & self.known
 
     def require_clearance(self, clearance_m: float) -> None:
         """Keep clearances up to this distance at least, from now on."""
@@ -144,6 +159,19 @@ class OccupancyMap:
         rows, columns = cells.T
         means: Floats = self._sums[rows, columns] / self.hits[rows, columns, None]
         return means
+
+    def offsets_in(self, cells: Indices) -> Floats:
+        """Return how far the mean points hit are from the centres of cells (n, 2), in cells, row and column."""
+        off: Floats = self.frame.to_grid(self.points_in(cells).reshape(-1, 2))[:, ::-1] - cells - 0.5
+        return off
+
+    def put(self, cells: Indices, offsets: Floats, hits: Counts) -> None:
+        """Let cells (n, 2) be occupied, whose mean points hit are off their centres so far."""
+        at = tuple(cells.T)
+        self.hits[at] = hits
+        self._sums[at] = self.frame.to_map((cells + 0.5 + offsets)[:, ::-1]) * hits[:, None]
+        self.occupied[at] = True
+        self._keep_off(cells)
 
     def nearest_m(self, place: Floats) -> float:
         """Return the distance from a place (2,) to the nearest obstacle seen, metres; inf beyond `clearance_m`."""
@@ -226,12 +254,13 @@ class OccupancyMap:
         self.passes[part] += passed
         self.near[part] |= passed & (away <= near_m / cell_m)
         freed = self.occupied[part] & passed
-        freed[freed] = ~_are_occupied(self.hits[part][freed], self.passes[part][freed])
+        freed[freed] = ~are_occupied(self.hits[part][freed], self.passes[part][freed])
         self.occupied[part] &= ~freed
         return bool(freed.any())
 
 
-def _are_occupied(hits: Counts, passes: Counts) -> Bools:
+def are_occupied(hits: Counts, passes: Counts) -> Bools:
+    """Return which cells are occupied, by how many beams ended in them and how many scans passed them."""
     occupied: Bools = (hits > 0) & (hits >= OCCUPIED_SHARE * (hits + passes))
     return occupied
 

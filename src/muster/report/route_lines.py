@@ -5,15 +5,16 @@ All places are metres in the map frame, `(n, d)` with d 2 or 3 as the picture ha
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from muster.mission.model import Mission, Point, Robot, Station, Task
-from muster.motion.actions import Impossible, plan
+from muster.motion.actions import Impossible, TaskMotion, plan
 from muster.motion.path import NoPath
 from muster.verification import RouteFigures, Verdict
 
@@ -51,8 +52,11 @@ class RobotLines:
         return np.vstack([parts[0], gap, parts[1]]) if len(parts) > 1 else parts[0] if parts else self.work
 
 
-PathFunction = Callable[[Robot, Point, Point], Sequence[Point]]
-"""The points that a robot passes from one place to another, both included."""
+class PathFunction(Protocol):
+    """The paths of robots."""
+
+    def __call__(self, robot: Robot, start: Point, goal: Point, *, at_work: bool = False) -> Sequence[Point]:
+        """Return the points that a robot passes from one place to another, both included; at work it is on no lanes."""
 
 
 def robot_lines(mission: Mission, verdict: Verdict, dimensions: int) -> list[RobotLines]:
@@ -68,16 +72,16 @@ def robot_lines(mission: Mission, verdict: Verdict, dimensions: int) -> list[Rob
 
 
 def path_function(mission: Mission) -> PathFunction:
-    """The path of a robot between two places: over the map where travel is by the map, else straight."""
-    if mission.travel_rule != "map":
-        return lambda robot, start, goal: (start, goal)
+    """The path of a robot between two places: over the map or along lanes where travel is by these, else straight."""
+    if mission.driven_lanes is None and mission.travel_rule != "map":
+        return lambda robot, start, goal, *, at_work=False: (start, goal)
     from muster.motion.map_world import body_of
     from muster.motion.paths.robot_paths import RobotPaths
 
     robot_paths = RobotPaths.of(mission)
 
-    def path(robot: Robot, start: Point, goal: Point) -> Sequence[Point]:
-        found = robot_paths.path(body_of(robot), start, goal)
+    def path(robot: Robot, start: Point, goal: Point, *, at_work: bool = False) -> Sequence[Point]:
+        found = robot_paths.path(body_of(robot, None if at_work else mission), start, goal)
         return (start, goal) if isinstance(found, NoPath) else [tuple(point) for point in found.points.tolist()]
 
     return path
@@ -99,7 +103,7 @@ def _lines_of(
         points = (stop.position,) if isinstance(stop, Station) else work_points(stop, robot)
         travel[-1] += path(robot, here, points[0])[1:]
         if len(points) > 1:
-            legs = [path(robot, start, goal) for start, goal in pairwise(points)] if _is_moving(stop) else [points]
+            legs = _work_legs(stop, robot, points, path)
             (lanes if has_area(stop) else work).append([points[0], *(point for leg in legs for point in leg[1:])])
         here = points[-1]
         if points[0] != here:
@@ -151,8 +155,16 @@ def marks_of(mission: Mission, drawn: Iterable[RobotLines]) -> dict[str, Point]:
     return {task.id: done[task.id] if task.id in areas & done.keys() else task.position for task in mission.tasks}
 
 
-def _is_moving(stop: Task | Station) -> bool:
-    return isinstance(stop, Task) and stop.action is not None and stop.action.has_geometry
+def _work_legs(
+    stop: Task | Station, robot: Robot, points: Sequence[Point], path: PathFunction
+) -> Sequence[Sequence[Point]]:
+    """The lines between the points of a stop: where an action moves the robot its paths, else straight."""
+    doing = (
+        plan(stop, robot) if isinstance(stop, Task) and stop.action is not None and stop.action.has_geometry else None
+    )
+    if not isinstance(doing, TaskMotion):
+        return [points]
+    return [path(robot, start, goal, at_work=not doing.is_travel) for start, goal in pairwise(points)]
 
 
 def left_out(mission: Mission, verdict: Verdict) -> list[Task]:

@@ -6,16 +6,19 @@ Where there are tags to be found, the frontiers are those of what cameras have b
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.mission.model import Event, Mission, Robot, Task
+from muster.mission.model import Event, Mission, Point, Robot, Task
 from muster.motion.grid import Floats
 from muster.motion.map_world import Body, body_of
 from muster.perception.explored_ground import ExploredGround
-from muster.perception.frontiers import frontier_cells, frontiers, is_near_frontier
+from muster.perception.frontiers import AirFrontiers, Frontiers, GroundFrontiers, OverflownFrontiers
+from muster.perception.team_map import TeamMap
 from muster.simulation.world_base import FLIGHT_M
 
 if TYPE_CHECKING:
@@ -29,6 +32,8 @@ LEAST_LOOK_M = 1.0
 """How near robots on the ground are to what their cameras see, at least."""
 PER_ROBOT = 3
 """Frontiers that are tasks at once, for each robot."""
+VISITS = 2
+"""How often robots go to the very same place of a frontier: what cannot be seen from there is left."""
 
 
 def looks_m(robot: Robot) -> float:
@@ -41,6 +46,30 @@ def looks_m(robot: Robot) -> float:
     return max(LEAST_LOOK_M, FLIGHT_M * math.tan(math.radians(robot.camera.fov_deg) / 2))
 
 
+@dataclass(frozen=True)
+class _Explorers:
+    """Robots that explore the same part of the world.
+
+    Parameters
+    ----------
+    robots : tuple of str
+        Their ids; empty: whoever there is.
+    made : callable
+        Makes the frontiers for a body of them.
+    """
+
+    robots: tuple[str, ...]
+    made: Callable[[Body], Frontiers]
+
+
+@dataclass
+class _Frontier:
+    """The task of a frontier: its place, and whose it is."""
+
+    at: Point
+    of: _Explorers
+
+
 class Exploration:
     """Tasks of frontiers: one for each, until it has been seen what lies behind it.
 
@@ -48,8 +77,8 @@ class Exploration:
     ----------
     mission : Mission
         Its rules say what tasks need; its robots are those that explore.
-    ground : ExploredGround
-        The ground as the team knows it.
+    team_map : TeamMap
+        The map as the team knows it.
 
     Attributes
     ----------
@@ -57,13 +86,25 @@ class Exploration:
         The tasks that frontiers became.
     """
 
-    def __init__(self, mission: Mission, ground: ExploredGround) -> None:
-        self._mission, self._ground = mission, ground
+    def __init__(self, mission: Mission, team_map: TeamMap) -> None:
+        self._map = team_map
         self._type = _open_type(mission)
-        self._near = bool(mission.tags)
+        self._explorers = _explorers_of(mission, team_map)
         self._due_s = -math.inf
-        self._open: dict[str, tuple[float, float]] = {}
+        self._open: dict[str, _Frontier] = {}
+        self._visited: Counter[Point] = Counter()
         self.tasks: set[str] = set()
+
+    def resume(self, executor: Executor) -> None:
+        """Take over the tasks of frontiers of a run that was interrupted."""
+        open_ids = {task.id for task in executor.ledger.open}
+        for task in executor.ledger.tasks.values():
+            if task.priority != PRIORITY or not task.id.startswith("frontier-"):
+                continue
+            self.tasks.add(task.id)
+            of = next((one for one in self._explorers if one.robots == (task.only_robots or ())), None)
+            if task.id in open_ids and of is not None:
+                self._open[task.id] = _Frontier(task.position, of)
 
     def look(self, executor: Executor, now: float) -> None:
         """Cancel the tasks of frontiers that are none any more, and add those of new ones."""
@@ -72,49 +113,91 @@ class Exploration:
         if now < self._due_s and not ended and self._open:
             return
         self._due_s = now + LOOK_S
-        self._open = {name: at for name, at in self._open.items() if name in open_ids}
-        bodies = [body_of(state.robot) for state in executor.crew.values() if not state.out]
-        if not bodies:
-            return
-        body = min(bodies, key=lambda one: one.radius_m)
-        here = np.array([state.position[:2] for state in executor.crew.values() if not state.out])
-        self._cancel_seen(executor, body, here)
-        self._add_new(executor, body, here)
+        self._visited.update(self._open[name].at for name in ended)
+        self._open = {name: one for name, one in self._open.items() if name in open_ids}
+        self._map.share_air()
+        for explorers in self._explorers:
+            crew = [
+                state
+                for name, state in executor.crew.items()
+                if not state.out and (not explorers.robots or name in explorers.robots)
+            ]
+            if crew:
+                body = min((body_of(state.robot) for state in crew), key=lambda one: one.radius_m)
+                here = np.array([state.position for state in crew])
+                frontiers = explorers.made(body)
+                self._cancel_seen(executor, explorers, frontiers, here)
+                self._add_new(executor, explorers, frontiers, here)
 
-    def _cancel_seen(self, executor: Executor, body: Body, here: Floats) -> None:
+    def _cancel_seen(self, executor: Executor, explorers: _Explorers, frontiers: Frontiers, here: Floats) -> None:
         """Cancel the tasks of frontiers that are none any more, or that no robot can reach as the map is now."""
-        if not self._open:
+        tasks = [name for name, one in self._open.items() if one.of is explorers]
+        if not tasks:
             return
-        cells = frontier_cells(self._ground, body, near=self._near)
-        reached = np.isfinite(self._ground.lengths(body, here, np.array([*self._open.values()])).min(axis=0)).tolist()
-        for (name, at), is_reached in zip(list(self._open.items()), reached, strict=True):
-            if not (is_reached and is_near_frontier(cells, self._ground, at, self._apart_m(body))):
+        places = np.array([self._open[name].at for name in tasks])
+        for name, is_reached in zip(tasks, frontiers.reached(here, places).tolist(), strict=True):
+            if not (is_reached and frontiers.are_near(self._open[name].at)):
                 del self._open[name]
                 executor.report(Event(at_s=executor.now_s, cancel_task=name))
 
-    def _add_new(self, executor: Executor, body: Body, here: Floats) -> None:
+    def _add_new(self, executor: Executor, explorers: _Explorers, frontiers: Frontiers, here: Floats) -> None:
         most = PER_ROBOT * len(here)
-        if len(self._open) >= most:
+        if sum(one.of is explorers for one in self._open.values()) >= most:
             return
-        for place, _ in frontiers(self._ground, body, here, near=self._near):
-            known = [*self._open.values()]
+        for place in frontiers.places(here):
+            known = [one.at for one in self._open.values() if one.of is explorers]
             if len(known) >= most:
                 return
-            if all(math.dist(place, at) > 2 * self._apart_m(body) for at in known):
-                self._add(executor, place)
+            at: Point = tuple(np.round(place, 4).tolist())
+            if self._visited[at] < VISITS and all(math.dist(at, other) > 2 * frontiers.apart_m for other in known):
+                self._add(executor, explorers, at)
 
-    def _add(self, executor: Executor, place: Floats) -> None:
-        at = (round(float(place[0]), 4), round(float(place[1]), 4))
-        task = Task(id=f"frontier-{len(self.tasks) + 1}", position=at, type=self._type, priority=PRIORITY)
+    def _add(self, executor: Executor, explorers: _Explorers, at: Point) -> None:
+        where = at if len(at) == executor.mission.dimensions else (*at, 0.0)
+        task = Task(
+            id=f"frontier-{len(self.tasks) + 1}",
+            position=where,
+            type=self._type,
+            priority=PRIORITY,
+            only_robots=explorers.robots or None,
+        )
         while task.id in executor.ledger.tasks:
             task = replace(task, id=task.id + "'")
         if executor.report_if_it_fits(Event(at_s=executor.now_s, new_task=task)):
-            self._open[task.id] = at
+            self._open[task.id] = _Frontier(at, explorers)
             self.tasks.add(task.id)
 
-    def _apart_m(self, body: Body) -> float:
-        """How near to its frontier a task is, at most."""
-        return max(2 * body.radius_m, 10 * self._ground.seen.frame.resolution_m)
+
+def _explorers_of(mission: Mission, team_map: TeamMap) -> list[_Explorers]:
+    """Return which robots look for which frontiers.
+
+    In the plane all look for the same. In space those in the air and those on the ground have frontiers of their own;
+    where there are tags to be found, robots with cameras look at the ground from near.
+    """
+    near = bool(mission.tags)
+
+    def ground(body: Body) -> Frontiers:
+        found = team_map.of(body)
+        assert isinstance(found, ExploredGround)
+        return GroundFrontiers(found, body, near=near)
+
+    air = team_map.air
+    if air is None:
+        return [_Explorers((), ground)]
+    able = [robot for robot in mission.all_robots if robot.camera is not None or not near]
+    flying, driving = (tuple(robot.id for robot in able if robot.kind == kind) for kind in ("air", "ground"))
+    height_m = team_map.rules.lowest_m + FLIGHT_M
+    explorers = []
+    if flying:
+        made = (
+            (lambda body: OverflownFrontiers(team_map, body, height_m))
+            if near
+            else (lambda body: AirFrontiers(air, body))
+        )
+        explorers.append(_Explorers(flying, made))
+    if driving and not (near and flying):
+        explorers.append(_Explorers(driving, ground))
+    return explorers
 
 
 def _open_type(mission: Mission) -> str | None:

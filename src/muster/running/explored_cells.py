@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.motion.grid import Bools
-from muster.perception.explored_ground import ExploredGround
+from muster.perception.team_map import TeamMap
 from muster.state.explored_map import FREE, OBSTACLE, UNSEEN
 from muster.state.ground_events import MapGrows
 
@@ -19,9 +19,9 @@ MOST_CELLS = 160
 class ShownMap:
     """The map of explored ground, coarsened; `event` tells what has changed since the last one."""
 
-    def __init__(self, ground: ExploredGround) -> None:
-        self._ground = ground
-        frame = ground.seen.frame
+    def __init__(self, team_map: TeamMap) -> None:
+        self._map = team_map
+        frame = team_map.ground.seen.frame
         self._wide = max(1, math.ceil(max(frame.shape) / MOST_CELLS))
         self._size = (math.ceil(frame.shape[0] / self._wide), math.ceil(frame.shape[1] / self._wide))
         self._told: npt.NDArray[np.int8] = np.full(self._size, UNSEEN, dtype=np.int8)
@@ -29,13 +29,15 @@ class ShownMap:
     @property
     def explored_m2(self) -> float:
         """How large the ground is that was seen to be free."""
-        seen = self._ground.seen
+        self._map.share_air()
+        seen = self._map.ground.seen
         return float(np.count_nonzero(seen.known & ~seen.occupied) * seen.frame.resolution_m**2)
 
     def event(self) -> MapGrows | None:
         """Return the event of what has changed; None: nothing has."""
+        self._map.share_air()
         now = np.full(self._size, UNSEEN, dtype=np.int8)
-        seen = self._ground.seen
+        seen = self._map.ground.seen
         now[self._any(seen.known)] = FREE
         now[self._any(seen.occupied)] = OBSTACLE
         changed = now != self._told

@@ -148,7 +148,7 @@ class Live:
             begin_s = max(begin_s, state.now_s)
         require_supported(mission)
         require_geometry(mission, "a run of real robots")
-        robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
+        robot_paths = RobotPaths.of(mission) if mission.has_paths else None
         manager = manager_for(
             request.traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world
         )

@@ -124,7 +124,7 @@ def require_possible(sensors: Mapping[str, SensorParameters], mission: Mission) 
         )
     if LASERS in sensors and not any(landmark.known for landmark in mission.landmarks):
         raise ParameterError(f"localise: lasers in mission {mission.name}; expected a mission with known landmarks")
-    if SCANS in sensors and (mission.map is None or mission.travel_rule != "map"):
+    if SCANS in sensors and (mission.map is None or mission.travel_off_lanes != "map"):
         raise ParameterError(f"localise: scans in mission {mission.name}; expected a mission that travels by its map")
     capture = sensors.get(MOTION_CAPTURE)
     if isinstance(capture, MotionCaptureParameters) and capture.robot:

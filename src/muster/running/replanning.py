@@ -72,7 +72,8 @@ def planning_of(
         return reallocation_by(options, travel, seed), None
     if standing.improver is None and standing.searches:
         # A travel of its own: path finders are for one thread.
-        search = BackgroundSearch(reallocation_by(options, travel_of(mission), seed), repeatable=repeatable)
+        replan = replace(reallocation_by(options, travel_of(mission), seed), for_a_gain=True)
+        search = BackgroundSearch(replan, repeatable=repeatable)
         standing = replace(standing, improver=search)
     return Insertion(travel), standing
 
@@ -101,7 +102,7 @@ class BackgroundSearch:
     ) -> None:
         self._replan, self._search_s, self._repeatable = replan, search_s, repeatable
         self._thread = ThreadPoolExecutor(1, "search")
-        self._search: Future[Revision] | None = None
+        self._search: Future[Routes] | None = None
         self._due_s = math.inf
 
     @property
@@ -111,16 +112,21 @@ class BackgroundSearch:
 
     def begin(self, rest: RemainingMission) -> None:
         """Search for better routes from this moment on."""
-        self._search = self._thread.submit(self._replan, frozen(rest))
+        self._search = self._thread.submit(self._changed, frozen(rest))
         self._due_s = rest.now_s + self._search_s
 
+    def _changed(self, rest: RemainingMission) -> Routes:
+        """The routes that a search has changed."""
+        routes = self._replan(rest).routes
+        return {name: route for name, route in routes.items() if list(route) != list(rest.routes.get(name, ()))}
+
     def found(self, now: float) -> Routes | None:
-        """The routes that were found, by robot, if it is time for them."""
+        """The routes that were found, by robot, if it is time for them; of those robots alone that have others."""
         search = self._search
         if search is None or now < self._due_s or not (self._repeatable or search.done()):
             return None
         self._search, self._due_s = None, math.inf
-        return search.result().routes
+        return search.result()
 
     def close(self) -> None:
         """End the thread, when its search is done."""

@@ -16,7 +16,6 @@ from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
 from muster.mission.supported_features import require_supported
-from muster.motion.maps.ros_yaml import write_ros_map
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
@@ -93,7 +92,7 @@ class Simulation:
         if ground is not None:
             mission, robot_paths = ground.mission, ground.paths
         else:
-            robot_paths = RobotPaths.of(mission) if mission.has_ways_by_map else None
+            robot_paths = RobotPaths.of(mission) if mission.has_paths else None
             if begun is None:  # later each robot stands anywhere, and a leg is checked when it is sent
                 require_open_ways(mission, plan)
         travel, seed = travel_of(mission, robot_paths), request.seed
@@ -144,7 +143,8 @@ class Simulation:
             self._true_places.resume(begun.bodies.get("done_at", ()))
         if ground is not None:
             self._executor.plan_again(GroundUnknown(cell_m=ground.cell_m))
-            ground.begin(self._world, self._robots.ports, self._executor)
+            kept = None if begun is None else begun.bodies.get("map")
+            ground.begin(self._world, self._robots.ports, self._executor, kept)
         self._tick()
 
     @property
@@ -214,9 +214,9 @@ class Simulation:
         ParameterError
             if the event names a robot or task that there is not, or one anew that there is.
         """
-        if event.robot_joins is not None:
-            self._executor.require_newcomer(event.robot_joins)
-            self._take_event(event)  # the executor asks for its port
+        if event.robot_joins is not None or event.robot_moved is not None:
+            self._executor.require_room(event)
+            self._take_event(event)  # the executor asks for its port, and where it is
             self._executor.report(event)
         else:
             self._executor.report(event)
@@ -239,7 +239,8 @@ class Simulation:
         found = [] if self._camera_search is None else self._camera_search.snapshot()
         used = {name: state.used for name, state in self._executor.crew.items()}
         done_at = self._true_places.snapshot()
-        return {**self._world.snapshot(), "found": found, "used": used, "done_at": done_at}
+        ground = {} if self._ground is None else {"map": self._ground.snapshot()}
+        return {**self._world.snapshot(), **ground, "found": found, "used": used, "done_at": done_at}
 
     def result(self) -> Report:
         """What it took, so far or in all."""
@@ -269,7 +270,7 @@ class Simulation:
         return self._camera_search
 
     def save_map(self, file: str | Path) -> None:
-        """Write the map that robots without one have built, in the form of ROS: a file (.yaml), its image beside it.
+        """Write the map that robots without one have built; see `UnknownGround.save`.
 
         Raises
         ------
@@ -278,8 +279,7 @@ class Simulation:
         """
         if self._ground is None:
             raise ParameterError(f"save_map: {file}; expected robots without a map")
-        seen = self._ground.ground.seen
-        write_ros_map(Path(file), seen.known, seen.occupied, seen.frame)
+        self._ground.save(Path(file))
 
     def close(self) -> None:
         """Give back what pictures hold of the graphics library, and the thread that searches."""
@@ -336,8 +336,16 @@ class Simulation:
 
     def _take_event(self, event: Event) -> None:
         """What an event does to bodies; what it does to the plan is the executor's affair."""
+        try:
+            self._executor.require_room(event)
+        except ParameterError:
+            return  # the executor refuses it, too
         if event.robot_fails is not None:
             self._world.fail(event.robot_fails)
+        elif event.robot_removed is not None:
+            self._world.remove(event.robot_removed)
+        elif event.robot_moved is not None:
+            self._world.place(event.robot_moved.robot, event.robot_moved.position)
         elif event.robot_silent is not None:
             self._world.silence(event.robot_silent)
         elif event.robot_returns is not None:

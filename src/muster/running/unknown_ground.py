@@ -10,20 +10,25 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from muster.execution.reports.report import GroundReport, Report
 from muster.mission.model import Map, Mission, Robot
-from muster.motion.grid import Bools, Floats, Indices
+from muster.motion.grid import Bools, Floats
 from muster.motion.map_world import Body, World, body_of
+from muster.motion.maps.ros_yaml import write_ros_map
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.unreachable_places import checked_world
-from muster.perception.explored_ground import CERTAIN, ExploredGround, map_to_build, ruled_world
-from muster.perception.explored_paths import ExploredPaths, require_flat
+from muster.perception.explored_paths import ExploredPaths, require_travel_by_map
 from muster.perception.laser import LIDAR
+from muster.perception.map_zones import zones_of
 from muster.perception.occupancy_map import Scan
+from muster.perception.sphere_scanner import SPHERE_LIDAR
+from muster.perception.team_map import TeamMap
+from muster.perception.voxel_map import SpaceScan
 from muster.running.exploration import Exploration, looks_m
 from muster.running.explored_cells import ShownMap
 from muster.simulation import SimulatedWorld
@@ -38,6 +43,8 @@ LOOK_S = 0.5
 """Seconds between two scans of a robot that moves."""
 SHOW_S = 2.0
 """Seconds between two events that tell how the map has grown."""
+KEEP_S = 5.0
+"""Seconds between two snapshots of the map."""
 _ON_BORDER_M = 0.02
 """From the border of a zone in which a beam ends there."""
 _APART_CELLS = 3
@@ -58,8 +65,8 @@ class _Way:
 class _Lidar:
     """The lidar of a robot: where it scanned last, and the scans that have not reached the team."""
 
-    at: Floats = field(default_factory=lambda: np.full(2, np.inf))
-    unsent: list[Scan] = field(default_factory=list)
+    at: Floats = field(default_factory=lambda: np.full(3, np.inf))
+    unsent: list[Scan | SpaceScan] = field(default_factory=list)
 
 
 class UnknownGround:
@@ -80,36 +87,66 @@ class UnknownGround:
     Raises
     ------
     ParameterError
-        If the mission has no map in the plane by which robots travel.
+        If the mission has no map by which robots travel.
     """
 
     def __init__(self, mission: Mission, *, explore: bool) -> None:
-        require_flat(mission)
+        require_travel_by_map(mission)
         self._truth = checked_world(mission)
-        rules = ruled_world(self._truth)
-        radii = [robot.radius_m for robot in mission.all_robots]
-        self.ground = ExploredGround(rules, map_to_build(self._truth, radii))
-        self.paths = ExploredPaths(self.ground)
-        self.mission = without_obstacles(mission, rules)
+        self.map = TeamMap(self._truth, mission)
+        self.paths = ExploredPaths(self.map)
+        self.mission = without_obstacles(mission, self.map.rules)
         self._with_map = RobotPaths(self._truth)
-        self._shown = ShownMap(self.ground)
-        self._exploration = Exploration(mission, self.ground) if explore or mission.tags else None
+        self._shown = ShownMap(self.map)
+        self._exploration = Exploration(mission, self.map) if explore or mission.tags else None
         self._lidars: dict[str, _Lidar] = {}
         self._ways: dict[str, _Way] = {}
         self._turned = 0
         self._told = 0
         self._shown_s = -math.inf
+        self._kept_s, self._kept = -math.inf, dict[str, Any]()
         self.due_s = -math.inf
 
-    def begin(self, world: SimulatedWorld, ports: Mapping[str, RobotPort], executor: Executor) -> None:
-        """Scan for the first time, in a world whose robots these are."""
+    def save(self, file: Path) -> None:
+        """Write the map in the form of ROS: a file (.yaml), its image (.pgm) beside it.
+
+        In space that is the ground as it is for the widest robots on it; the mission is written beside it
+        (.mission.yaml), with what was seen in the air as zones.
+        """
+        seen = self.map.ground.seen
+        write_ros_map(file, seen.known, seen.occupied, seen.frame)
+        if self.map.air is not None and self.mission.map is not None:
+            zones = (*self.mission.map.zones, *zones_of(self.map.air.seen))
+            built = replace(self.mission, map=replace(self.mission.map, zones=zones))
+            built.save(file.with_suffix(".mission.yaml"))
+
+    def snapshot(self) -> Mapping[str, Any]:
+        """Return the map as plain data for `begin`; it is some seconds old at most."""
+        now = self._world.time_s
+        if now >= self._kept_s + KEEP_S:
+            self._kept_s, self._kept = now, self.map.snapshot()
+        return self._kept
+
+    def begin(
+        self,
+        world: SimulatedWorld,
+        ports: Mapping[str, RobotPort],
+        executor: Executor,
+        snapshot: Mapping[str, Any] | None,
+    ) -> None:
+        """Scan for the first time, in a world whose robots these are; with the map of a run that was interrupted."""
         self._world, self._ports, self._executor = world, ports, executor
+        if snapshot is not None:
+            self.map.resume(snapshot)
+            self.paths.grown()
+            if self._exploration is not None:
+                self._exploration.resume(executor)
         self.look(world.time_s)
 
     @property
     def cell_m(self) -> float:
         """The side of a cell of the map, metres."""
-        return round(self.ground.seen.frame.resolution_m, 6)
+        return round(self.map.cell_m, 6)
 
     def look(self, now: float) -> None:
         """Let robots scan if that is due, go other ways where theirs turn out to be closed, and explore."""
@@ -118,10 +155,9 @@ class UnknownGround:
         self.due_s = now + LOOK_S
         self._executor.set_clock(now)
         said = {name: port.telemetry() for name, port in self._ports.items()}
-        fresh, changed = self._scan(now, said)
-        if changed:
+        if self._scan(now, said):
             self.paths.grown()
-        closed = [name for name in self._executor.crew if len(fresh) and self._is_closed(name, fresh)]
+        closed = [name for name in self._executor.crew if self._is_closed(name)]
         self._turned += len(closed)
         self._executor.go_other_ways(closed)
         if self._exploration is not None:
@@ -150,27 +186,65 @@ class UnknownGround:
             ),
         )
 
-    def _scan(self, now: float, said: Mapping[str, Telemetry | None]) -> tuple[Indices, bool]:
-        """Let robots scan; return the cells that are newly occupied, and whether the map of obstacles has changed."""
-        fresh, changed = [np.empty((0, 2), dtype=np.int64)], False
+    def _scan(self, now: float, said: Mapping[str, Telemetry | None]) -> bool:
+        """Let robots scan; return whether the map of obstacles has changed."""
+        self.map.begin_look()
         for number, name in enumerate(self._world.ports):
             lidar = self._lidars.setdefault(name, _Lidar())
-            place = self._world.positions[number, :2]
-            still = math.dist(place, lidar.at) < self.ground.seen.frame.resolution_m
+            place = self._world.positions[number].copy()
+            still = math.dist(place, lidar.at) < self.map.cell_m
             if still and not lidar.unsent:
                 continue
             heard = _is_heard(said.get(name), now, self._world.dt_s)
             if not still:
                 lidar.at = place
                 told = said.get(name) if heard else None
-                lidar.unsent.append(self._scan_of(name, number, told, said))
+                lidar.unsent += self._scans_of(name, number, told, said)
             for scan in lidar.unsent if heard else ():
-                cells, altered = self.ground.seen.see(scan, LIDAR, looks_m(self._robot(name)))
-                fresh.append(cells)
-                changed |= altered
+                self._enter(scan, self._robot(name))
             if heard:
                 lidar.unsent.clear()
-        return np.concatenate(fresh), changed
+        return self.map.end_look()
+
+    def _enter(self, scan: Scan | SpaceScan, robot: Robot) -> None:
+        if isinstance(scan, SpaceScan):
+            self.map.see_space(scan, SPHERE_LIDAR, looks_m(robot))
+        else:
+            self.map.see(scan, LIDAR, body_of(robot), looks_m(robot))
+
+    def _scans_of(
+        self, name: str, number: int, told: Telemetry | None, said: Mapping[str, Telemetry | None]
+    ) -> list[Scan | SpaceScan]:
+        """Return what a robot sees: around itself where the team maps the air, and in its plane unless it is there."""
+        scans: list[Scan | SpaceScan] = []
+        if self.map.air is not None:
+            scans.append(self._space_scan_of(name, number, told, said))
+        if self.map.air is None or self._robot(name).kind != "air":
+            scans.append(self._scan_of(name, number, told, said))
+        return scans
+
+    def _space_scan_of(
+        self, name: str, number: int, told: Telemetry | None, said: Mapping[str, Telemetry | None]
+    ) -> SpaceScan:
+        """One scan all around; where another robot says that it is there is no obstacle."""
+        eye, heading = self._world.positions[number].copy(), float(self._world.headings[number])
+        if told is not None:
+            eye, heading = np.array(told.position), told.heading
+        seen = self._world.scan_space(name, SPHERE_LIDAR)
+        scan = SpaceScan(eye, heading, seen.ranges, np.isfinite(seen.ranges) & ~seen.on_ground, seen.on_ground)
+        ends, _ = scan.points(SPHERE_LIDAR)
+        scan.hits[scan.hits] = self._are_things(name, ends, said)
+        return scan
+
+    def _are_things(self, name: str, ends: Floats, said: Mapping[str, Telemetry | None]) -> Bools:
+        """Whether a robot's beams that ended at places (n, d) met no other robot, where those say that they are."""
+        is_thing = np.ones(len(ends), dtype=np.bool_)
+        margin_m = _APART_CELLS * self.map.cell_m
+        for one, other in said.items():
+            if other is not None and one != name:
+                away = np.linalg.norm(ends - np.array(other.position)[: ends.shape[1]], axis=1)
+                is_thing &= away > self._robot(one).radius_m + margin_m
+        return is_thing
 
     def _scan_of(self, name: str, number: int, told: Telemetry | None, said: Mapping[str, Telemetry | None]) -> Scan:
         """One scan from where the robot truly is, with the pose that it takes for its own, as far as it is heard.
@@ -184,13 +258,8 @@ class UnknownGround:
         scan = Scan.of((float(x), float(y), heading), ranges)
         angles = heading + LIDAR.bearings[scan.hits]
         ends = np.column_stack([x + ranges[scan.hits] * np.cos(angles), y + ranges[scan.hits] * np.sin(angles)])
-        is_thing = ~self._on_ruled_borders(body_of(self._robot(name)), ends)
-        margin_m = _APART_CELLS * self.ground.seen.frame.resolution_m
-        for one, other in said.items():
-            if other is not None and one != name:
-                away = np.linalg.norm(ends - other.position[:2], axis=1)
-                is_thing &= away > self._robot(one).radius_m + margin_m
-        scan.hits[scan.hits] = is_thing
+        is_ruled = self._on_ruled_borders(body_of(self._robot(name)), ends)
+        scan.hits[scan.hits] = self._are_things(name, ends, said) & ~is_ruled
         return scan
 
     def _on_ruled_borders(self, body: Body, places: Floats) -> Bools:
@@ -200,20 +269,21 @@ class UnknownGround:
         image = self._truth.image
         within_m = _ON_BORDER_M if image is None else image.resolution_m
         on = np.zeros(len(places), dtype=np.bool_)
-        for area in self.paths.world.stopping(body, False):
+        for area in self.paths.world.stopping(body, self._truth.dimensions == 3):
             on |= shapely.distance(area.polygon.exterior, shapely.points(places)) <= within_m
         return on
 
     def _robot(self, name: str) -> Robot:
         return self._executor.crew[name].robot
 
-    def _is_closed(self, name: str, fresh: Indices) -> bool:
+    def _is_closed(self, name: str) -> bool:
         """Whether obstacles that were not known are in the way of a robot."""
         state = self._executor.crew[name]
         if state.out or not state.points_left:
             return False
-        way = np.array([state.position[:2], *(point[:2] for point in state.points_left)])
-        return not self.ground.is_clear(body_of(state.robot), way, CERTAIN, fresh)
+        size = self._truth.dimensions
+        way = np.array([state.position[:size], *(point[:size] for point in state.points_left)])
+        return self.map.is_closed(body_of(state.robot), way)
 
     def _measure_ways(self) -> None:
         """Compare what robots drove from arrival to arrival with the ways that the true map has."""
@@ -237,7 +307,8 @@ class UnknownGround:
             way, number = self._ways[name], list(self._world.ports).index(name)
             place = self._world.positions[number].copy()
             if not isinstance(event, Ends):
-                leg = self._with_map.leg_m(body_of(self._robot(name)), tuple(way.at[:2]), tuple(place[:2]))
+                size = self._truth.dimensions
+                leg = self._with_map.leg_m(body_of(self._robot(name)), tuple(way.at[:size]), tuple(place[:size]))
                 if math.isfinite(leg):
                     way.with_map_m += leg
                     way.driven_m += driven[name] - way.driven_before_m

@@ -9,9 +9,8 @@ import numpy as np
 
 from muster.motion.grid import Bools, Floats, Grid
 from muster.motion.map_world import Body, World
-
-Slab = tuple[list[tuple[float, float]], float, float]
-"""Corners, lowest and highest z of a zone over or under which robots fly."""
+from muster.perception.explored_ground import is_obstacle
+from muster.perception.sphere_scanner import Slab
 
 
 def faces_and_slabs(world: World, body: Body) -> tuple[Floats, list[Slab]]:
@@ -36,6 +35,22 @@ def faces_and_slabs(world: World, body: Body) -> tuple[Floats, list[Slab]]:
         faces += _sides(ring, low, high)
         if math.isfinite(low) or math.isfinite(high):
             slabs.append((ring[:-1], low, high))
+    return np.array(faces, dtype=np.float64).reshape(-1, 6), slabs
+
+
+def things_in_air(world: World) -> tuple[Floats, list[Slab]]:
+    """Return the upright faces and the level ones of what stands in the air, as `faces_and_slabs` does.
+
+    What is closed by rule is not there, nor is what is closed to robots on the ground alone: it has no height.
+    """
+    faces: list[list[float]] = []
+    slabs: list[Slab] = []
+    for area in world.areas:
+        if not (is_obstacle(area) and "air" in area.zone.forbidden_to):
+            continue
+        ring = [(float(x), float(y)) for x, y in area.polygon.exterior.coords]
+        faces += _sides(ring, area.floor_m, area.ceiling_m)
+        slabs.append((ring[:-1], area.floor_m, area.ceiling_m))
     return np.array(faces, dtype=np.float64).reshape(-1, 6), slabs
 
 

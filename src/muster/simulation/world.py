@@ -11,6 +11,7 @@ from muster.mission.model import Robot
 from muster.motion.grid import Floats
 from muster.motion.noise import Noise
 from muster.perception.laser import NO_DISCS, Scanner
+from muster.perception.sphere_scanner import SphereScan, SphereScanner
 from muster.simulation.port import SimulatedPort
 
 Observer = Callable[[float, Floats, Floats, Floats], None]
@@ -110,6 +111,14 @@ class SimulatedWorld(Protocol):
         """Let a failed robot work again, telemetry included; it stands until it gets way points."""
         ...
 
+    def remove(self, robot: str) -> None:
+        """Take a robot away: it is nowhere, in nobody's way, and not heard, until it recovers where it was."""
+        ...
+
+    def place(self, robot: str, position: tuple[float, ...]) -> None:
+        """Put a robot somewhere else: it stands there until it gets way points."""
+        ...
+
     def silence(self, robot: str) -> None:
         """Freeze a robot's telemetry; the robot goes on, and still receives way points."""
         ...
@@ -155,6 +164,13 @@ class SimulatedWorld(Protocol):
         ------
         ParameterError
             if the robot is not in the world, or a number is not finite.
+        """
+        ...
+
+    def scan_space(self, robot: str, scanner: SphereScanner) -> SphereScan:
+        """Return an exact scan all around from where a robot is, of a mission in space.
+
+        It sees what stands in the air, other robots and the ground. What is closed by rule alone is not seen.
         """
         ...
 

@@ -32,10 +32,11 @@ from muster.motion.noise import NO_NOISE, Noise
 from muster.motion.order_trajectory import TrajectoryMaker
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.perception.laser import NO_DISCS, Scanner
+from muster.perception.sphere_scanner import Slab, SphereScan, SphereScanner
 from muster.simulation.energy import NONE, ByRobot, SimulatedEnergy, capacity_in_usage, of_robot, require_by_robot
 from muster.simulation.port import Serving, SimulatedPort
 from muster.simulation.station_service import LOOK_S, WorldStations
-from muster.simulation.walls import Slab, faces_and_slabs
+from muster.simulation.walls import faces_and_slabs, things_in_air
 from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed, standing
 
 NEIGHBOURS = 10
@@ -52,6 +53,8 @@ Faces = tuple[Floats, list[Slab]]
 """As `faces_and_slabs` gives them."""
 OF_THE_THESIS = ("quadcopter", "differential-drive")
 """The kinematics for which [tcf-thesis] has control laws."""
+_AWAY_M = 1e7
+"""A robot that was taken away is so far from all others, and from any other like it."""
 _NO_FACES = np.empty((0, 6))
 _SLICE = 10_000
 """Steps between checks for Ctrl-C."""
@@ -171,11 +174,13 @@ class WorldBase(SimulatedWorld, ABC):
         self._in_time = mission.rules.usage == "time"
         self._walls: dict[tuple[Body, frozenset[str]], int] = {}
         self._faces: dict[tuple[Body, frozenset[str]], Faces] = {}
+        self._things: Faces | None = None
         self._doors_to_close = self._doors_closed
         self._numbers: dict[str, int] = {}
         self._robots: list[Robot] = []
         self._ports: dict[str, SimulatedPort] = {}
         self._failed: set[str] = set()
+        self._removed: dict[str, tuple[float, ...]] = {}  # by robot where it was taken away from
         self._before: Mapping[str, Any] = snapshot or {"least_m": None, "contacts": (), "distances_m": {}}
         for robot in mission.robots:
             self.join(robot if snapshot is None else standing(robot, snapshot))
@@ -263,7 +268,9 @@ class WorldBase(SimulatedWorld, ABC):
         Faults of robots, contacts and the clock are in it. What is random begins anew by the seed, and so does what a
         station has given to a robot that it serves.
         """
-        poses, motions = np.column_stack([self.positions, self.headings]), self._crowd.motions()
+        poses, motions = np.column_stack([self._crowd.positions(), self.headings]), self._crowd.motions()
+        for robot, place in self._removed.items():
+            poses[self._number(robot), :3] = place
         energies = {name: port.energy for name, port in self._ports.items()}
         return {
             "time_s": self.time_s,
@@ -271,6 +278,7 @@ class WorldBase(SimulatedWorld, ABC):
             "distances_m": dict(self.distances_m),
             "charges": {name: energy.look().share for name, energy in energies.items() if energy is not None},
             "failed": sorted(self._failed),
+            "removed": sorted(self._removed),
             "muted": [name for name, port in self._ports.items() if port.muted],
             "least_m": self.min_distance_m,
             "contacts": [[one.time_s, *one.robots, one.least_distance_m] for one in self.contacts],
@@ -283,6 +291,8 @@ class WorldBase(SimulatedWorld, ABC):
             self.fail(robot, silent=False)
         for robot in snapshot["muted"]:
             self.silence(robot)
+        for robot in snapshot.get("removed", ()):
+            self.remove(robot)
 
     def fail(self, robot: str, *, silent: bool = True) -> None:
         self._crowd.fail(self._number(robot))
@@ -290,7 +300,26 @@ class WorldBase(SimulatedWorld, ABC):
         if silent:
             self._ports[robot].mute()
 
+    def remove(self, robot: str) -> None:
+        number = self._number(robot)
+        if robot in self._removed:
+            return
+        self.fail(robot)
+        self._removed[robot] = tuple(self._crowd.positions()[number].tolist())
+        self._put(number, (_AWAY_M, _AWAY_M * (1 + number), self._removed[robot][2]))
+
+    def place(self, robot: str, position: tuple[float, ...]) -> None:
+        number = self._number(robot)
+        height = float(self._crowd.positions()[number, 2])
+        self._put(number, (*position, height)[:3] if len(position) == 2 else position)
+
+    def _put(self, number: int, place: tuple[float, ...]) -> None:
+        x, y, z = place
+        self._crowd.place(number, (x, y, z))
+
     def recover(self, robot: str) -> None:
+        if robot in self._removed:
+            self._put(self._number(robot), self._removed.pop(robot))
         self._crowd.recover(self._number(robot))
         self._failed.discard(robot)
         self._ports[robot].unmute()
@@ -327,6 +356,7 @@ class WorldBase(SimulatedWorld, ABC):
         bodies = [
             (body_of(robot), place)
             for robot, at, velocity in zip(self._robots, self.positions, self.velocities, strict=True)
+            if robot.id not in self._removed
             for place in self._until_it_stands(robot, at, velocity)
         ]
         closing = self._doors_to_close - self._map.closed
@@ -354,6 +384,7 @@ class WorldBase(SimulatedWorld, ABC):
     @property
     def positions(self) -> Floats:
         found: Floats = self._crowd.positions()
+        found[[self._numbers[robot] for robot in self._removed]] = math.nan
         return found
 
     @property
@@ -413,6 +444,17 @@ class WorldBase(SimulatedWorld, ABC):
     @abstractmethod
     def scan(self, robot: str, scanner: Scanner, cylinders: Floats = NO_DISCS, height_m: float | None = None) -> Floats:
         """See `SimulatedWorld`."""
+
+    def scan_space(self, robot: str, scanner: SphereScanner) -> SphereScan:
+        """See `SimulatedWorld`. Other robots are balls of their radius."""
+        if self._things is None:
+            self._things = (_NO_FACES, []) if self._map is None else things_in_air(self._map)
+        number, places = self._number(robot), self.positions
+        radii = np.array([other.radius_m for other in self._robots])
+        balls = np.delete(np.column_stack([places, radii]), number, axis=0)
+        faces, slabs = self._things
+        heading = float(self.headings[number])
+        return scanner.scan(places[number], heading, faces, slabs, self.ground_m, balls)
 
     @abstractmethod
     def _go_on(self, until_s: float) -> list[Event]:

@@ -171,11 +171,15 @@ class MissionState:
 
     def take_out(self, robot: str, why: str, now: float) -> None:
         """A robot takes no part any more, and work on which it was is broken off."""
-        for task in [task for task in self.ledger.under_way if robot in self.ledger.at_work(task)]:
-            self.ledger.break_off(task)
+        self.break_off_work(robot)
         if robot in self.robots:
             self.robots[robot].out, self.robots[robot].out_s = why, now
             self.routes.pop(robot, None)
+
+    def break_off_work(self, robot: str) -> None:
+        """Work on which a robot was is broken off."""
+        for task in [task for task in self.ledger.under_way if robot in self.ledger.at_work(task)]:
+            self.ledger.break_off(task)
 
     def begin(self, task: str, robots: tuple[str, ...], now: float) -> None:
         """Robots begin a task, unless others are at it, or have done it."""

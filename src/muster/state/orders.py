@@ -36,7 +36,7 @@ class RefusedOrder:
         """From an event as in a mission file."""
         kind, what = next((key, value) for key, value in event.items() if key != "at_s")
         if isinstance(what, Mapping):
-            what = what["id"] if "id" in what else what["task"]
+            what = next(what[key] for key in ("id", "task", "robot") if key in what)
         return cls(now, kind, what, reason)
 
 

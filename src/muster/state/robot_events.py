@@ -49,6 +49,22 @@ class RobotStuck(RobotOut):
     """A robot does not get on."""
 
 
+@happens("robot_removed", "{robot} is taken away", mark=words.ALARM)
+class RobotRemoved(RobotOut):
+    """Somebody takes a robot away, with what it has on board: its place is free."""
+
+
+@happens("robot_moved", "{robot} is moved to {position}", mark=words.CHANGE)
+class RobotMoved(ExecutionEvent):
+    """Somebody moves a robot: coordinates in the map frame, metres. Work that it was at is broken off."""
+
+    robot: str
+    position: tuple[float, ...]
+
+    def change(self, state: MissionState) -> None:
+        state.break_off_work(self.robot)
+
+
 @happens("robot_returns", "{robot} takes part again", mark=words.CHANGE)
 class RobotReturns(ExecutionEvent):
     """A robot takes part again."""

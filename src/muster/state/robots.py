@@ -7,7 +7,12 @@ from dataclasses import dataclass, field, replace
 
 from muster.mission.model import Robot
 
-OUT = {"robot_fails": "failed", "robot_silent": "fell silent", "robot_stuck": "did not get on"}
+OUT = {
+    "robot_fails": "failed",
+    "robot_silent": "fell silent",
+    "robot_stuck": "did not get on",
+    "robot_removed": "was taken away",
+}
 """By kind of the event after which a robot takes no part: why, in words."""
 
 

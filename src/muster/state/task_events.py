@@ -171,6 +171,11 @@ class NewTask(ExecutionEvent):
     task: Mapping[str, Any] | str
     came_s: float | None = None
 
+    @property
+    def task_id(self) -> str:
+        """The id of the task."""
+        return self.task if isinstance(self.task, str) else str(self.task["id"])
+
     def change(self, state: MissionState) -> None:
         task = state.task_of(self.task)
         state.ledger.add(task)

@@ -130,10 +130,16 @@ class Ledger:
 
         One that comes too late to begin with another can never begin. It is tied to none: no other waits for it.
         """
+        is_again = task.id in self.tasks
         self.tasks[task.id] = as_it_holds(task, self.ignored)
         self.touched[task.id] = None
-        self._tasks_changed()
-        if tasks_named_by(task) and (self.starts_s or self.ends_s or self.cancelled):
+        self.revision += 1
+        is_tied = bool(tasks_named_by(task))
+        if is_tied or is_again:
+            self._model = None
+        elif self._model is not None:
+            self._model.add(self.tasks[task.id])
+        if is_tied and (self.starts_s or self.ends_s or self.cancelled):
             self._expire_if_too_late(task.id)
 
     def _expire_if_too_late(self, task: str) -> None:

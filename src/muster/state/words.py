@@ -37,6 +37,8 @@ _DOES = {
     "robot_fails": "takes {robot} out",
     "robot_silent": "lets {robot} fall silent",
     "robot_returns": "brings {robot} back",
+    "robot_removed": "takes {robot} away",
+    "robot_moved": "moves {robot} to {position}",
     "robot_joins": "lets {robot} join",
 }
 """What somebody had done, by the verb, or by the kind of the event."""

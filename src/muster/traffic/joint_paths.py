@@ -2,9 +2,10 @@
 
 Priority inheritance with backtracking, PIBT ([okumura2022]), makes the steps, with the swap of [okumura-star2023]. The
 search over configurations with lazily added constraints, LaCAM ([okumura2023]), makes it complete: where there are
-paths it finds them, given time, and where there are none it proves that in the end. With `anytime` it goes on to better
-ones, as LaCAM* does ([okumura-star2023]); with `refine` a large neighbourhood search does that ([li2021]), which is
-better where robots are many, and proves nothing. All are in the core.
+paths it finds them, given time, and where there are none it proves that in the end. At first robots take ways that
+avoid those who come the other way, by costs of edges that grow with their number ([chen2024]). With `anytime` it goes
+on to better paths, as LaCAM* does ([okumura-star2023]); with `refine` a large neighbourhood search does that
+([li2021]), which is better where robots are many, and proves nothing. All are in the core.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ from muster.mission.values.arrays import Bools, Indices
 from muster.mission.values.ranges import require_counts
 
 _AT_ONCE = 100
-"""Expansions between two looks at the clock."""
+"""Expansions in one call of the core, without a time limit."""
+_SHARE = 0.005
+"""The part of a time limit that one call of the core may take before calls become smaller."""
 _MOST_ENTRIES = 40_000_000
 """Robots times configurations that are kept at most: a few hundred bytes each configuration and some for each robot."""
 
@@ -57,11 +60,14 @@ class JointPaths:
         whether no paths have a smaller sum of loss: proven.
     expansions
         of the search, with the neighbourhoods of `refine`.
+    least_sum
+        the sum of the shortest paths of all robots, each alone: no sum of costs is smaller.
     """
 
     vertices: Indices
     optimal: bool
     expansions: int
+    least_sum: int
 
 
 @dataclass(frozen=True)
@@ -107,9 +113,15 @@ def joint_paths(
     effort = _Effort(clock, time_limit, expansions)
     if len(set(goals)) < len(goals):
         return NoJointPaths(True, "two robots have one goal")
-    search = core.Lacam(graph, list(starts), list(goals), samples=params.samples, seed=seed, anytime=params.anytime)
-    if not search.connected:
+    guidance = core.TrafficGuidance(graph, list(starts), list(goals), seed)
+    while not guidance.finished:
+        if not (more := effort.preparation()):
+            return NoJointPaths(False, "not found with 0 expansions: the time was over before all robots had a way")
+        guidance.advance(more)
+    if not guidance.connected:
         return NoJointPaths(True, "a goal cannot be reached from its start")
+    effort.begin_phase()
+    search = core.Lacam(guidance, samples=params.samples, seed=seed, anytime=params.anytime)
     while search.state == "searching" or (params.anytime and search.state == "solved"):
         if search.nodes * len(goals) > _MOST_ENTRIES or not (more := effort.next()):
             break
@@ -120,28 +132,42 @@ def joint_paths(
         return NoJointPaths(False, f"not found with {effort.done} expansions, {search.nodes} configurations seen")
     steps = search.solution()
     if params.refine:
-        refinement = core.JointRefinement(graph, steps, seed)
-        while more := effort.next():
+        effort.begin_phase()
+        refinement = core.JointRefinement(guidance, steps, seed)
+        while refinement.cost > guidance.least_sum and (more := effort.next()):
             refinement.advance(more)
         steps = refinement.solution()
-    return JointPaths(np.array(steps, dtype=np.int64), search.state == "optimal", effort.done)
+    return JointPaths(steps, search.state == "optimal", effort.done, guidance.least_sum)
 
 
 class _Effort:
-    """What may still be done."""
+    """What may still be done. Under a time limit calls of the core grow and shrink, so that each takes little of it."""
 
     def __init__(self, clock: Clock, time_limit: float | None, expansions: int | None) -> None:
-        self._clock, self._begin = clock, clock.now()
-        self._time_limit, self._expansions = time_limit, expansions
+        self._clock, self._time_limit, self._expansions = clock, time_limit, expansions
+        self._begin = self._last = clock.now()
         self.done = 0
+        self.begin_phase()
+
+    def begin_phase(self) -> None:
+        """Begin with small calls: nothing is known of how long those of another kind take."""
+        self._size = 1 if self._time_limit is not None else _AT_ONCE
 
     def next(self) -> int:
-        """How many expansions to do now; 0 at the end."""
-        if self._time_limit is not None and self._clock.now() - self._begin >= self._time_limit:
-            return 0
-        more = _AT_ONCE if self._expansions is None else min(_AT_ONCE, self._expansions - self.done)
+        """Return how many expansions to do now; 0 at the end."""
+        size = self.preparation()
+        more = size if self._expansions is None else min(size, self._expansions - self.done)
         self.done += more
         return more
+
+    def preparation(self) -> int:
+        """Return how many steps to do now that are no expansions; 0 at the end."""
+        if self._time_limit is None:
+            return self._size
+        now = self._clock.now()
+        share, self._last = (now - self._last) / max(self._time_limit, 1e-9), now
+        self._size = max(1, int(self._size * _SHARE / share)) if share > _SHARE else min(2 * self._size, _AT_ONCE)
+        return 0 if now - self._begin >= self._time_limit else self._size
 
 
 def _check(graph: core.DirectedGraph, starts: Sequence[int], goals: Sequence[int]) -> None:

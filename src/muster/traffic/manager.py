@@ -28,6 +28,10 @@ class TrafficManager(Protocol):
         """From now on these doors are closed, and the others open."""
         ...
 
+    def moved(self, robot: str) -> None:
+        """Somebody has put a robot, by its name, where it now says that it is."""
+        ...
+
     def reaches(self, robot: str, places: Sequence[Place]) -> list[bool]:
         """To which places a robot, by its name, can get past those that stand for good, for all that is known."""
         ...

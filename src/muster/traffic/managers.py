@@ -25,7 +25,7 @@ def manager_named(
     shared = _shared_roadmap(name, mission, world, margin_m, even_if_wide=closes_out)
     if shared is None:
         return None
-    lanes = [] if mission.lanes is None else limited_lanes(mission.lanes)
+    lanes = [] if mission.driven_lanes is None else limited_lanes(mission.driven_lanes)
     return ReservedTraffic(shared.plan(seed), margin_m=margin_m, lanes=lanes)
 
 
@@ -53,6 +53,6 @@ def _shared_roadmap(
     if mapped and world is None:
         world = World.of_travel(mission)
     shared = MissionRoadmap.of(mission, world if mapped else None, margin_m=margin_m)
-    if name != AUTO or mission.lanes is not None:
+    if name != AUTO or mission.driven_lanes is not None:
         return shared
     return shared if even_if_wide or shared.roadmap.narrow.any() else None

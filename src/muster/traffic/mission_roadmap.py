@@ -11,9 +11,10 @@ from muster.mission.lanes import Lanes
 from muster.mission.model import Mission, Point, Robot
 from muster.motion.actions import TaskMotion, plan
 from muster.motion.map_world import World
+from muster.motion.paths.lane_joints import ClosedLane
 from muster.traffic.journeys.roadmap_plan import RoadmapPlan
 from muster.traffic.roadmaps.doors import RoadmapDoors
-from muster.traffic.roadmaps.given_lanes import ClosedLane, closed_lanes
+from muster.traffic.roadmaps.given_lanes import closed_lanes
 from muster.traffic.roadmaps.passing_rows import with_passing_rows
 from muster.traffic.roadmaps.roadmap import MARGIN_M, Layer, Roadmap, layer_of_lanes, layer_of_space
 from muster.traffic.roadmaps.robot_sizes import same_ways, sizes
@@ -70,7 +71,7 @@ class MissionRoadmap:
         sharing = (*robots, *(robot for robot in mission.newcomers if robot.kind == kind))
         mapped = mission.map is not None and mission.has_ways_by_map
         spaces = RobotSpaces((world or World.of_travel(mission)) if mapped else None, kind)
-        maker = _Maker(mission.lanes, spaces, margin_m)
+        maker = _Maker(mission.driven_lanes, spaces, margin_m)
         radii_m = sizes((robot.radius_m for robot in sharing), maker.alike)
         if not radii_m:
             raise ParameterError(

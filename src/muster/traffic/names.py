@@ -42,9 +42,9 @@ def may_reserve(traffic: str, mission: Mission) -> bool:
         expected = f"{', '.join(TRAFFIC)}{did_you_mean(str(traffic), TRAFFIC)}"
         raise ParameterError(f"traffic: {shown(traffic)}; expected {expected}")
     driving = sum(map(drives, mission.all_robots))
-    enough = driving >= 2 or (driving == 1 and mission.lanes is not None)
+    enough = driving >= 2 or (driving == 1 and mission.driven_lanes is not None)
     if traffic == RESERVE and not enough:
         reason = "fewer than two robots of kind ground have a radius above 0"
         raise ParameterError(f"traffic: {traffic}; expected free: {reason}")
-    has_roadmap = traffic == RESERVE or mission.lanes is not None or mission.travel_rule == "map"
+    has_roadmap = traffic == RESERVE or mission.driven_lanes is not None or mission.travel_off_lanes == "map"
     return traffic != FREE and enough and has_roadmap

@@ -49,6 +49,7 @@ class MapPaths:
         self._world = World.of(mission)
         self._points = tuple(points)
         self._made: dict[tuple[float, str], PlanePaths | AirPaths] = {}
+        self._sights: dict[tuple[float, str, bool], _Sight] = {}
         in_air = any(isinstance(self._space(robot), PrismSpace) for robot in mission.robots)
         self.tolerance = AIR_TOLERANCE if in_air else PLANE_TOLERANCE
 
@@ -59,6 +60,23 @@ class MapPaths:
             space = self._space(robot)
             self._made[body] = AirPaths(space) if isinstance(space, PrismSpace) else PlanePaths(space, self._points)
         return self._made[body].metres(start, end)
+
+    def sees(self, robot: Robot, start: Point, end: Point, *, doors_open: bool) -> bool:
+        """Whether the straight way of a robot on the ground between two points of the plane is free."""
+        key = (robot.radius_m, robot.kind, doors_open)
+        if key not in self._sights:
+            world = self._world.with_closed(()) if doors_open else self._world
+            space = world.free_space(robot.radius_m, robot.kind)
+            assert not isinstance(space, PrismSpace), "a robot on the ground"
+            self._sights[key] = _sight_in(space)
+        sight = self._sights[key]
+        places, free = sight.settled(np.array([start[:2], end[:2]], dtype=np.float64))
+        return bool(free.all()) and sight.clear(places[0], places[1])
+
+    @property
+    def has_closed_doors(self) -> bool:
+        """Whether a door is closed before any event."""
+        return bool(self._world.closed)
 
     def _space(self, robot: Robot) -> Space:
         return self._world.free_space(robot.radius_m, robot.kind)
@@ -79,6 +97,10 @@ class _Sight(Protocol):
     def clear(self, start: Floats, end: Floats) -> bool: ...
 
 
+def _sight_in(space: GridSpace | PolygonSpace) -> _Sight:
+    return Cells(space) if isinstance(space, GridSpace) else Regions(space)
+
+
 class PlanePaths:
     """Shortest ways in the plane between some places, which must be known beforehand.
 
@@ -94,7 +116,7 @@ class PlanePaths:
     """
 
     def __init__(self, space: GridSpace | PolygonSpace, places: Iterable[Point]) -> None:
-        sight: _Sight = Cells(space) if isinstance(space, GridSpace) else Regions(space)
+        sight = _sight_in(space)
         feet = list(dict.fromkeys(place[:2] for place in places))
         self._number = {foot: k for k, foot in enumerate(feet)}
         self._sight = sight

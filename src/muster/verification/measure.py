@@ -200,7 +200,10 @@ def leg_between(travel: Travel, robot: Robot, start: Place, end: Place, times: L
     metres = travel.metres(robot, start, end)
     if metres is None:
         return Leg(exists=False, usage=0.0, seconds=0.0)
-    seconds = times.leg_seconds(metres, rise_m(start, end), math.dist(start.exit, end.entry))
+    if travel.keeps_to_lanes(robot):
+        seconds = travel.lane_seconds(robot, start.exit, end.entry)
+    else:
+        seconds = times.leg_seconds(metres, rise_m(start, end), math.dist(start.exit, end.entry))
     return Leg(exists=True, usage=seconds if in_time else metres, seconds=seconds)
 
 
@@ -218,6 +221,8 @@ def work_seconds(times: LegTimes, travel: Travel, robot: Robot, task: Task) -> f
     doing = None if times.is_constant else doing_at(robot, task)
     if not isinstance(doing, TaskMotion) or metres == 0.0:
         return metres / robot.speed_mps
+    if doing.is_travel and travel.keeps_to_lanes(robot):
+        return sum(travel.lane_seconds(robot, *leg) for leg in doing.legs)
     return times.work_seconds(doing.points, travel.leg_metres(robot, doing))
 
 

@@ -7,7 +7,10 @@ from typing import NamedTuple
 
 from muster.mission.model import Mission, Point, Robot, Rules, Station, Task
 from muster.motion.actions import Impossible, TaskMotion, plan
+from muster.motion.leg_times import LegTimes
 from muster.verification.closed_areas import ClosedAreas
+from muster.verification.lane_travel import TOLERANCE as LANE_TOLERANCE
+from muster.verification.lane_travel import LaneTravel, Length
 from muster.verification.map_paths import MapPaths
 
 
@@ -82,7 +85,9 @@ class Travel:
     """
 
     def __init__(self, mission: Mission) -> None:
-        self._paths = MapPaths(mission, _points(mission)) if mission.travel_rule == "map" else None
+        self._paths = MapPaths(mission, _points(mission)) if mission.travel_off_lanes == "map" else None
+        self._mission, lanes = mission, mission.driven_lanes
+        self._lanes = None if lanes is None else LaneTravel(lanes, self._paths)
         self._by_table = mission.travel_rule == "matrix"
         self.areas = ClosedAreas(mission)
         self._has_closed_legs = mission.has_straight_legs_among_areas
@@ -92,17 +97,18 @@ class Travel:
     @property
     def tolerance(self) -> float:
         """By how much, relative, a right length may differ from these: 0, but where a map is in play."""
-        return 0.0 if self._paths is None else self._paths.tolerance
+        lanes = 0.0 if self._lanes is None else LANE_TOLERANCE
+        return lanes if self._paths is None else max(lanes, self._paths.tolerance)
 
     @property
     def is_straight(self) -> bool:
         """Whether each leg is the straight line between its ends, which is open."""
-        return self._paths is None and not self._by_table and not self._has_closed_legs
+        return self._paths is None and self._lanes is None and not self._by_table and not self._has_closed_legs
 
     @property
     def may_need_detours(self) -> bool:
         """Whether a place without a leg from another may be reached by way of a third."""
-        return self._by_table or self._has_closed_legs
+        return self._by_table or self._has_closed_legs or self._lanes is not None
 
     @property
     def is_tabled(self) -> bool:
@@ -111,6 +117,8 @@ class Travel:
 
     def metres(self, robot: Robot, start: Place, end: Place) -> float | None:
         """Return the length of the leg from the exit of `start` to the entry of `end`; None if there is no way."""
+        if self.keeps_to_lanes(robot):
+            return self._lane_metres(robot, start.exit, end.entry)
         if self._paths is not None:
             return self._paths.metres(robot, start.exit, end.entry)
         if not self._is_open(robot, start.exit, end.entry):
@@ -122,6 +130,29 @@ class Travel:
             length = math.dist(start.exit, end.entry)
         return length if math.isfinite(length) else None
 
+    def keeps_to_lanes(self, robot: Robot) -> bool:
+        """Whether a robot travels along lanes."""
+        return self._lanes is not None and robot.kind == "ground"
+
+    def lane_seconds(self, robot: Robot, start: Point, end: Point) -> float:
+        """Return how long a leg along lanes takes from rest to rest; inf where there is none."""
+        times = LegTimes.in_mission(robot, self._mission)
+        found = self._lane_length(robot, start, end)
+        return math.inf if found is None else float(times.lane_seconds(found.metres, found.seconds))
+
+    def _lane_length(self, robot: Robot, start: Point, end: Point) -> Length | None:
+        assert self._lanes is not None, "a robot that keeps to lanes"
+        return self._lanes.length(robot, LegTimes.in_mission(robot, self._mission), start, end)
+
+    def _lane_metres(self, robot: Robot, start: Point, end: Point) -> float | None:
+        """The length of a leg along lanes, on which heights change evenly; None if there is none."""
+        found = self._lane_length(robot, start, end)
+        return (
+            None
+            if found is None
+            else math.hypot(found.metres, *(p - q for p, q in zip(start[2:], end[2:], strict=True)))
+        )
+
     def work_metres(self, robot: Robot, task: Task) -> float | None:
         """Return what the task costs the robot: the typed cost, or the legs between its way points.
 
@@ -130,17 +161,22 @@ class Travel:
         doing = doing_at(robot, task)
         if doing is None:
             place = place_of_task(task)
+            if self.keeps_to_lanes(robot) and place.entry != place.exit:
+                return None if self._lane_metres(robot, place.entry, place.exit) is None else task.actuation_cost
             if self._paths is None or place.entry == place.exit:
                 return task.actuation_cost if self._is_open(robot, place.entry, place.exit) else None
             return None if self._paths.metres(robot, place.entry, place.exit) is None else task.actuation_cost
         if isinstance(doing, Impossible):
             return 0.0
-        if self._paths is None:
+        if self._paths is None and not (doing.is_travel and self.keeps_to_lanes(robot)):
             return doing.cost_m if all(self._is_open(robot, *leg) for leg in doing.legs) else None
         return None if math.inf in (lengths := self.leg_metres(robot, doing)) else math.fsum(lengths)
 
     def leg_metres(self, robot: Robot, doing: TaskMotion) -> list[float]:
         """Return the lengths of the legs between the way points of work that drives; inf where there is no way."""
+        if doing.is_travel and self.keeps_to_lanes(robot):
+            along = (self._lane_metres(robot, start, end) for start, end in doing.legs)
+            return [math.inf if length is None else length for length in along]
         if self._paths is None:
             return [math.dist(start, end) for start, end in doing.legs]
         lengths = (self._paths.metres(robot, start, end) for start, end in doing.legs)

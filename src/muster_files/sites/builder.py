@@ -340,7 +340,6 @@ class Builder:
         ways = Ways(dict(there.get("nodes", {})), list(there.get("edges", ())))
         begin = len(ways.edges)
         for entry in entries:
-            assert self._frame is not None
             ways.add(entry, self._frame, self.built.findings)
         for k, entry in enumerate(ways.made, begin):
             self._place(("lanes", "edges", k), entry)

@@ -40,11 +40,17 @@ class Geometry:
         of a point or a line one ring each; of an area its outer ring, then its holes.
     over_ground
         whether heights are metres over the ground, and not over the ellipsoid.
+    in_metres
+        whether places are metres in the map frame, and not degrees.
+    names
+        of the places of a line, where these have such.
     """
 
     shape: Shape
     pieces: tuple[tuple[Ring, ...], ...]
     over_ground: bool = False
+    in_metres: bool = False
+    names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

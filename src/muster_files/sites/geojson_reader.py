@@ -1,6 +1,7 @@
 """GeoJSON (RFC 7946) as a layer: a collection, a feature or a geometry; longitude first, heights over the ellipsoid.
 
-A `crs`, which the standard no longer has, is kept to where it stands.
+A `crs`, which the standard no longer has, is kept to where it stands. Route graphs of Nav2, which have the same form,
+are lines of lanes in the map's frame.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from muster_files.sites.features import (
     with_name,
 )
 from muster_files.sites.file_sizes import read_bytes, require_moderate_json
+from muster_files.sites.route_graph import RouteGraph, is_edge
 from muster_files.tracked_json import Tracked, enter_json, parse_tracked
 
 _WHAT = "GeoJSON: a FeatureCollection"
@@ -43,6 +45,7 @@ _SHAPES: Mapping[str, tuple[Shape, int, bool]] = {
 _LEAST = {"point": 1, "line": 2, "area": 4}
 _SELDOM_DEEPER = 8
 _BOX = passed_over("says where the geometry is, which does so itself", minor=True)
+_IN_METRES = passed_over("is not that of a route graph, which stands in the frame of the map, in metres", minor=True)
 _TOLD: Mapping[Shape, str] = {"point": "a point", "line": "a line", "area": "an area"}
 
 
@@ -109,6 +112,9 @@ class _Reading:
         if kind not in ("FeatureCollection", "Feature", "GeometryCollection", *_SHAPES):
             told = data if kind is None else kind
             raise self._refused((), "type" if isinstance(data, dict) else "", told, _WHAT)
+        items = data.peek("features")
+        if isinstance(items, list) and any(map(is_edge, items)):
+            return self._graph(data)
         if data.get("crs") is not None:
             self._transform = to_wgs84(_crs(data["crs"]), self._file, "crs")
         name = data.get("name")
@@ -121,15 +127,20 @@ class _Reading:
         items = data.get("features")
         if not isinstance(items, list):
             raise self._refused(("features",), "features", items, "a list of features")
-        if any(_is_edge(item) for item in items):
-            told, expected = "a route graph of Nav2 (startid, endid)", "the map of a site"
-            raise self._refused(("features",), "features", told, f"{expected}; lanes of a mission: {{nodes, edges}}")
         found = [
             feature
             for k, item in enumerate(items)
             for feature in self._features(item, ("features", k), ("features", k, "geometry"))
         ]
         return layer_of(self._file, title, found, self._document)
+
+    def _graph(self, data: Tracked) -> Layer:
+        """The edges of a route graph, which stands in the frame of the map."""
+        data.say(_IN_METRES, "crs")
+        name = data.get("name")
+        graph = RouteGraph(self._file, lambda k: self._line(("features", k)), self._document.add)
+        edges = list(graph.features(data.get("features")))
+        return layer_of(self._file, name if isinstance(name, str) else "", edges, self._document)
 
     def _features(self, item: Any, at: Where, geometry_at: Where) -> Iterator[Feature]:
         where = f"features[{at[1]}]" if at else ""
@@ -220,12 +231,6 @@ class _Reading:
 
     def _refused(self, at: Where, where: str, value: object, expected: str) -> Exception:
         return refused(self._file, self._line(at), where, "missing" if value is None else value, expected)
-
-
-def _is_edge(item: object) -> bool:
-    """Whether a feature is an edge of a route graph of Nav2."""
-    properties = item.peek("properties") if isinstance(item, Tracked) else None
-    return isinstance(properties, dict) and {"startid", "endid"} <= properties.keys()
 
 
 def _is_number(value: object) -> bool:

@@ -79,7 +79,7 @@ def choose_origin(
 def _choose_middle(found: SiteOrigin, *, has_base: bool, flat: bool) -> bool:
     """Choose the middle of all places, as far as there are any in degrees and none in metres beside them."""
     in_degrees = [entry for entry in found.entries if any(True for _ in _degrees_of(entry))]
-    in_metres = next((entry for entry in found.entries if entry.metres is not None), None)
+    in_metres = next((entry for entry in found.entries if _is_in_metres(entry)), None)
     if not in_degrees:
         return False
     if in_metres is not None or has_base:
@@ -97,6 +97,10 @@ def _choose_middle(found: SiteOrigin, *, has_base: bool, flat: bool) -> bool:
         f"origin_wgs84 chosen: lat_deg {frame.lat}, lon_deg {frame.lon}, alt_m {frame.alt}; --origin says another"
     )
     return True
+
+
+def _is_in_metres(entry: Entry) -> bool:
+    return entry.metres is not None or (entry.geometry is not None and entry.geometry.in_metres)
 
 
 def _places(entries: Iterable[Entry]) -> Iterable[Coordinate]:
@@ -132,7 +136,7 @@ def _degrees_of(entry: Entry) -> Iterator[Coordinate]:
     """Yield the places of an entry that are in degrees."""
     if entry.degrees is not None:
         yield entry.degrees
-    elif entry.geometry is not None:
+    elif entry.geometry is not None and not entry.geometry.in_metres:
         yield from (place for piece in entry.geometry.pieces for ring in piece for place in ring)
 
 

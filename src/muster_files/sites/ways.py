@@ -38,11 +38,17 @@ class Ways:
                 self._near.setdefault(_square(place), []).append(name)
         self._driven |= {way for edge in self.edges for way in _directions(edge)}
 
-    def add(self, entry: Entry, frame: Frame, findings: list[Finding]) -> None:
+    def add(self, entry: Entry, frame: Frame | None, findings: list[Finding]) -> None:
         """Add the lines of an entry; where a lane leads already in a direction no second one is made."""
         assert entry.geometry is not None
-        lines = [frame.metres([place[:2] for place in piece[0]]) for piece in entry.geometry.pieces]
-        names = [[self._node(point) for point in line] for line in lines]
+        given = [[place[:2] for place in piece[0]] for piece in entry.geometry.pieces]
+        if entry.geometry.in_metres:
+            lines = [[list(place) for place in line] for line in given]
+        else:
+            assert frame is not None, "of places in degrees"
+            lines = [frame.metres(line) for line in given]
+        called = entry.geometry.names or [""] * max(map(len, lines), default=0)
+        names = [[self._node(point, name) for point, name in zip(line, called, strict=False)] for line in lines]
         ends = [(a, b) for line in names for a, b in itertools.pairwise(line) if a != b]
         both = entry.values.get("both_ways", not entry.values.get("one_way", False))
         if "both_ways" in entry.values and "one_way" in entry.values:
@@ -64,15 +70,16 @@ class Ways:
             self.edges.append(edge)
             self.made.append(entry)
 
-    def _node(self, point: Sequence[float]) -> str:
+    def _node(self, point: Sequence[float], called: str) -> str:
+        """The node at a point; a new one has the name that the point has, if no other is called so."""
         column, row = _square(point)
         for square in itertools.product((column, column - 1, column + 1), (row, row - 1, row + 1)):
             for name in self._near.get(square, ()):
                 if math.dist(self.nodes[name], point[:2]) <= _SAME_M:
                     return name
-        number = len(self.nodes) + 1
-        while (name := f"n{number}") in self.nodes:
-            number += 1
+        number, name = len(self.nodes) + 1, called
+        while not name or name in self.nodes:
+            name, number = f"n{number}", number + 1
         self.nodes[name] = list(point[:2])
         self._near.setdefault((column, row), []).append(name)
         return name

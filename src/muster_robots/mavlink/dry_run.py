@@ -32,8 +32,8 @@ class Line:
         return asdict(self)
 
 
-Way = Callable[[Robot, Place, Place], Sequence[Place] | None]
-"""The places that a robot passes from one place to another, the last included; None where there is no way."""
+Way = Callable[[Robot, Place, Place], Sequence[Waypoint] | None]
+"""What a robot passes from one place to another, the last included; None where there is no way."""
 
 
 def lines_of(mission: Mission, plan: Plan, fleet: MavlinkFleet, way: Way) -> list[Line]:
@@ -64,10 +64,10 @@ def _route(robot: Robot, tasks: Sequence[Task], fleet: MavlinkFleet, way: Way) -
             raise ParameterError(f"plan: {robot.id} does {task.id}; {doing.reason}")
         waypoints: list[Waypoint] = []
         for waypoint in doing.waypoints:
-            places = way(robot, here, waypoint.position)
-            if places is None:
+            there = way(robot, here, waypoint.position)
+            if there is None:
                 raise ParameterError(f"plan: {robot.id} does {task.id}; there is no way for it")
-            waypoints += [*map(Waypoint, places[:-1]), waypoint]
+            waypoints += [*there[:-1], waypoint]
             here = waypoint.position
         flown = session.drone.flown(waypoints)
         refusal = session.fence(flown[0].position, flown)

@@ -22,9 +22,9 @@ from muster.traffic.joint_path_faults import faults
 from muster.traffic.joint_paths import JointPaths, Parameters, costs, grid_graph, joint_paths
 from muster.traffic.move_faults import distances
 from muster.traffic.move_faults import faults as move_faults
+from muster.traffic.movingai import Ends, read_map, read_scenario
 from muster.traffic.single_moves import MovePlanner
 from muster_studies.benches.measurement import Measurement
-from muster_studies.instances.movingai import Ends, read_map, read_scenario
 
 FOLDER = "MUSTER_MAPF"
 WAREHOUSE, RANDOM, SCENARIO = "warehouse-10-20-10-2-1.map", "random-32-32-10.map", "random-32-32-10-random-1.scen"

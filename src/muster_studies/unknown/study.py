@@ -21,12 +21,14 @@ from muster_studies.effort import Effort
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.runs import mission_named
 from muster_studies.tables import Cell, Table
-from muster_studies.unknown.scenes import building, random_world
+from muster_studies.unknown.scenes import building, hall, random_space, random_world
 
-WORLDS, BUILDINGS, TEAM = 50, 5, 5
+WORLDS, SPACES, BUILDINGS, HALLS, TEAM = 50, 20, 5, 3, 5
 QUICK = 2
 _WAYS = (("market-rescue-arena", "handBot", 25, (2.0, 2.0)), ("floor", "rover1", 20, (40.0, 24.0)))
 """Missions, robots, how many ways, and the corner opposite to (0, 0) of the rectangle from which ends are drawn."""
+_RANDOM = {"world": random_world, "space": random_space}
+_EXPLORED = {"building": building, "hall": hall}
 _LONG = 0.4
 """Share of the width of the rectangle that ways with the map are long at least."""
 
@@ -75,7 +77,7 @@ class _Places:
         self.steps: list[Floats] = []
 
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
-        self.steps.append(positions[:, :2].copy())
+        self.steps.append(positions.copy())
 
     def on_event(self, *_: object) -> None: ...
 
@@ -90,9 +92,11 @@ def outcome_of(job: Job) -> Outcome:
     """Do a job."""
     if job.what == "ways":
         return ways_of(job.name, job.robots)
-    if job.what == "building":
-        return carried_out(building(job.seed, job.robots), explore=True)
-    return carried_out(mission_named(job.name) if job.name else random_world(job.seed))
+    if job.what in _EXPLORED:
+        return carried_out(_EXPLORED[job.what](job.seed, job.robots), explore=True)
+    if job.what in _RANDOM:
+        return carried_out(_RANDOM[job.what](job.seed))
+    return carried_out(mission_named(job.name))
 
 
 def ways_of(name: str, count: int, seed: int = 1) -> Outcome:
@@ -132,7 +136,7 @@ def carried_out(mission: Mission, *, explore: bool = False) -> Outcome:
     assert ground is not None
     steps = np.stack(places.steps)
     clearances = [
-        float(world.clearance(steps[:, k], robot.kind, robot.radius_m).min()) / robot.radius_m
+        float(world.clearance(steps[:, k, : mission.dimensions], robot.kind, robot.radius_m).min()) / robot.radius_m
         for k, robot in enumerate(mission.robots)
     ]
     ratio = (ground.driven_m / ground.with_map_m,) if ground.with_map_m else ()
@@ -172,11 +176,15 @@ class Missions:
     def jobs(self, effort: Effort) -> Iterator[Job]:
         yield Job("mission", "market-rescue-arena")
         if not effort.quick:
-            yield Job("mission", "floor")
+            yield from (Job("mission", name) for name in ("floor", "yard", "depot"))
         yield from self._worlds(effort)
+        yield from self._spaces(effort)
 
     def _worlds(self, effort: Effort) -> list[Job]:
         return [Job("world", seed=seed) for seed in range(QUICK if effort.quick else effort.seeds or WORLDS)]
+
+    def _spaces(self, effort: Effort) -> list[Job]:
+        return [Job("space", seed=seed) for seed in range(1 if effort.quick else effort.seeds or SPACES)]
 
     def table(self, effort: Effort, found: Mapping[Job, Outcome]) -> Table:
         cells: list[dict[str, Cell]] = [
@@ -184,26 +192,31 @@ class Missions:
         ]
         worlds = [found[job] for job in self._worlds(effort)]
         cells.append({"mission": f"{len(worlds)} random worlds", **_figures(worlds)})
+        spaces = [found[job] for job in self._spaces(effort)]
+        cells.append({"mission": f"{len(spaces)} random worlds in space", **_figures(spaces)})
         return Table.of_cells(self.number, "Missions carried out", cells, _NOTES)
 
 
 @dataclass(frozen=True)
 class Exploration:
-    """A row for each building, explored by one robot and by five."""
+    """A row for each building, explored by one robot and by five: on the ground, or in the air under a ceiling."""
 
     number: str = "exploration"
+    what: str = "building"
+    title: str = "Buildings of 24 rooms explored on the ground"
+    count: int = BUILDINGS
 
     def jobs(self, effort: Effort) -> Iterator[Job]:
         for seed in self._seeds(effort):
-            yield from (Job("building", seed=seed, robots=robots) for robots in (1, TEAM))
+            yield from (Job(self.what, seed=seed, robots=robots) for robots in (1, TEAM))
 
     def _seeds(self, effort: Effort) -> range:
-        return range(1 if effort.quick else BUILDINGS)
+        return range(1 if effort.quick else self.count)
 
     def table(self, effort: Effort, found: Mapping[Job, Outcome]) -> Table:
         cells: list[dict[str, Cell]] = []
         for seed in self._seeds(effort):
-            one, team = (found[Job("building", seed=seed, robots=robots)] for robots in (1, TEAM))
+            one, team = (found[Job(self.what, seed=seed, robots=robots)] for robots in (1, TEAM))
             cells.append(
                 {
                     "building": seed,
@@ -216,7 +229,7 @@ class Exploration:
             )
         mean = sum(float(str(cell["share"])) for cell in cells) / len(cells)
         cells.append({"building": "mean", "share": mean})
-        return Table.of_cells(self.number, "Buildings of 24 rooms explored", cells)
+        return Table.of_cells(self.number, self.title, cells)
 
 
 _NOTES = (
@@ -237,7 +250,8 @@ def _figures(outcomes: list[Outcome]) -> dict[str, Cell]:
     }
 
 
-_TABLES: tuple[Reproduction[Job, Outcome], ...] = (Ways(), Missions(), Exploration())
+_IN_THE_AIR = Exploration("air", "hall", "Halls of 12 rooms under a ceiling explored in the air", HALLS)
+_TABLES: tuple[Reproduction[Job, Outcome], ...] = (Ways(), Missions(), Exploration(), _IN_THE_AIR)
 
 UNKNOWN = Repetition(
     **description("unknown"),

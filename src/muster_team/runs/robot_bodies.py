@@ -179,12 +179,21 @@ class RobotBodies:
         if not self._is_possible(event):
             self._log.tell(OtherEvent(time_s=self.time_s, kind="without_effect", content=plain(event)))
             return
-        if event.robot_fails is not None:
-            self._fail(event.robot_fails)  # first, as its last reports precede the event
-        if not self._log.take_event(event, self.time_s) or event.robot_fails is not None:
+        if (down := event.robot_fails or event.robot_removed) is not None:
+            self._fail(down)  # first, as its last reports precede the event
+            if event.robot_removed is not None:
+                self._world.remove(down)
+        if not self._log.take_event(event, self.time_s) or down is not None:
             return
+        self._carry_out(event)
+
+    def _carry_out(self, event: Event) -> None:
+        """Apply an event that leaves robots at work, or brings one."""
         if event.robot_silent is not None:
             self._set_radio(event.robot_silent, on=False)
+        elif event.robot_moved is not None:
+            self._world.place(event.robot_moved.robot, event.robot_moved.position)
+            self._send(event, event.robot_moved.robot)
         elif event.robot_returns is not None:
             self._return(event)
         elif event.robot_joins is not None:
@@ -202,8 +211,10 @@ class RobotBodies:
 
     def _is_possible(self, event: Event) -> bool:
         """Whether the robot of an event is in a state to which the event applies."""
-        if event.robot_fails is not None:
-            return event.robot_fails in self.team.living
+        if (down := event.robot_fails or event.robot_removed) is not None:
+            return down in self.team.living
+        if event.robot_moved is not None:
+            return event.robot_moved.robot in self.team.living
         if event.robot_silent is not None:
             return event.robot_silent in self._connected
         if event.robot_returns is not None:

@@ -95,7 +95,7 @@ class RobotControl:
         speed: float = 1.0,
     ) -> None:
         mission = problem.mission.at_once()
-        robot_paths = problem.robot_paths if mission.has_ways_by_map else None
+        robot_paths = problem.robot_paths if mission.has_paths else None
         self._travel = travel_of(mission, robot_paths)
         self._negotiator = negotiator
         self._executor = Executor(

@@ -211,7 +211,7 @@ def _happens(event: Event) -> ExecutionEvent:
     if event.robot_silent is not None:
         return RobotSilent(robot=said, goes_on=True)
     named = {fields(KINDS[kind])[1].name: said}  # `time_s` comes first
-    return event_of(math.nan, kind, named if kind not in ("move_task", "delay_task") else said)
+    return event_of(math.nan, kind, said if isinstance(said, dict) and "id" not in said else named)
 
 
 def _difference(before: Plan, after: Plan) -> dict[str, Any]:

@@ -3,6 +3,8 @@
 import numpy as np
 import shapely
 
+FAR_M = 1e6
+"""So far away is a robot that was taken away."""
 NEAR_M = 0.15
 """By which a body may be nearer to a broken one than a way needs, and still leave on its side."""
 
@@ -18,8 +20,8 @@ class Space:
         shapely.prepare((self.inside, self._faces))
 
     def gap_m(self, places):
-        """Metres (n,) from places (n, 2) to the nearest wall; 0 in a wall."""
-        points = shapely.points(places)
+        """Metres (n,) from places (n, 2) to the nearest wall; 0 in a wall, or nowhere."""
+        points = shapely.points(np.nan_to_num(places, nan=FAR_M))
         away = shapely.distance(points, self._faces)
         return np.where(shapely.covers(self.inside, points), away, 0.0)
 

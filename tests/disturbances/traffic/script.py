@@ -3,17 +3,18 @@
 Doors close, and open again or not.
 """
 
-from math import inf
+from math import cos, inf, pi, sin
 from random import Random
 
 import numpy as np
 
 from muster import Event, Task
+from muster.mission.events import MovedRobot
 from tests.disturbances.traffic.missions import RADIUS_M, SKILL, newcomer
 
 STOPS = ("fails", "silent", "held", "loses its orders")
 """How a robot stops: execution is told; it is not heard; it hardly moves; it drops its orders and takes no others."""
-KINDS = (*STOPS, *STOPS, "new task", "cancel", "joins")
+KINDS = (*STOPS, *STOPS, "removed", "removed", "moved", "moved", "new task", "cancel", "joins")
 WITH_DOORS = (*KINDS, *(5 * ("closes",)))
 NARROW_M = 2 * RADIUS_M
 """A robot nearer than this to a wall leaves no room for another on that side."""
@@ -74,7 +75,7 @@ class Script:
                 self.simulation.report(Event(at_s=0, robot_returns=robot))
         due = [one for one in self._ahead if one[0] <= now]
         for at_s, kind in due:
-            if kind in STOPS:
+            if kind in (*STOPS, "removed"):
                 robot = self._victim(moving, waits=now < at_s + WAITS_S)
                 if robot is None:
                     continue
@@ -84,6 +85,7 @@ class Script:
                     "new task": self._new_task,
                     "cancel": self._cancel,
                     "joins": self._joins,
+                    "moved": self._moved,
                     "closes": self._closes,
                 }
                 rare[kind]()
@@ -111,7 +113,9 @@ class Script:
             self._backs[robot] = self.simulation.time_s + back_s
         self.downs.append((robot, self.simulation.time_s, inf))
         self._tell(kind, f"{robot} stops, back after {back_s} s")
-        if kind == "fails":
+        if kind == "removed":
+            self.simulation.report(Event(at_s=0, robot_removed=robot))
+        elif kind == "fails":
             self.simulation.report(Event(at_s=0, robot_fails=robot))
         elif kind == "silent":
             self.simulation.report(Event(at_s=0, robot_silent=robot))
@@ -121,7 +125,14 @@ class Script:
             self.simulation.world.fail(robot, silent=False)
 
     def _comes_back(self, robot):
-        """Execution is told, now or later, where it puts the robot out, or was told that it failed."""
+        """Execution is told, now or later, where it puts the robot out, or was told that it failed.
+
+        One that was taken away is put back where that was as soon as there is room.
+        """
+        if self.down[robot] == "removed":
+            others = [at for at in self._places.values() if not np.isnan(at).any()]
+            if np.hypot(*(np.array(others).reshape(-1, 2) - self.where[robot][0]).T).min(initial=inf) < APART_M / 2:
+                return
         del self._backs[robot]
         kind = self.down.pop(robot)
         self.downs = [
@@ -130,7 +141,9 @@ class Script:
         ]
         self._tell("returns", robot)
         world = self.simulation.world
-        if kind == "held":
+        if kind == "removed":
+            self.simulation.report(Event(at_s=0, robot_returns=robot))
+        elif kind == "held":
             world.slow(robot, 1.0)
         else:
             world.recover(robot)
@@ -180,11 +193,28 @@ class Script:
         """A robot joins where there is room for it."""
         for _ in range(100):
             place = self._place(RADIUS_M + 0.05)
-            if np.hypot(*(self._now() - place).T).min() > APART_M:
+            if np.nanmin(np.hypot(*(self._now() - place).T), initial=inf) > APART_M:
                 robot = newcomer(f"j_{len(self.told)}", place, self.random.choice(self.mission.robots))
                 self._tell("joins", f"{robot.id} at {place}")
                 self.simulation.report(Event(at_s=0, robot_joins=robot))
                 self.robots[robot.id] = robot
+                return
+
+    def _moved(self):
+        """Somebody puts a robot elsewhere: into the open, or by a metre or two where it is."""
+        up = [name for name in self.robots if name not in self.down]
+        robot = self.random.choice(up) if up else None
+        for _ in range(100 if robot else 0):
+            here, near = self._places[robot], self.random.random() < 0.5
+            angle, far_m = self.random.uniform(-pi, pi), self.random.uniform(0.3, 2.0)
+            aside = here[0] + far_m * cos(angle), here[1] + far_m * sin(angle)
+            place = aside if near else self._place(RADIUS_M + 0.05)
+            others = [at for name, at in self._places.items() if name != robot and not np.isnan(at).any()]
+            room = np.hypot(*(np.array(others) - place).T).min(initial=inf) > APART_M / 2
+            if room and self.space.gap_m([place])[0] > RADIUS_M + 0.05:
+                self._tell("moved", f"{robot} to {place}")
+                self.simulation.report(Event(at_s=0, robot_moved=MovedRobot(robot=robot, position=place)))
+                self._places[robot] = np.array(place)
                 return
 
     def _place(self, gap_m):

@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from tests.disturbances.traffic.geometry import joined
+from tests.disturbances.traffic.geometry import FAR_M, joined
 from tests.disturbances.traffic.missions import RADIUS_M
 
 STANDS_S = 60.0
@@ -58,7 +58,7 @@ def check_contacts(report, poses, space, robots):
             break
     for k, name in enumerate(names):
         track = np.array([places[k] for _, places in poses.steps if k < len(places)])
-        gaps = space.gap_m(track)
+        gaps = space.gap_m(track[~np.isnan(track).any(axis=1)])  # one that was taken away is nowhere
         at = int(gaps.argmin())
         report.check(gaps[at] > RADIUS_M - 1e-3, f"{name} touches a wall at {track[at]}: {gaps[at]:.3f} m")
 
@@ -69,7 +69,7 @@ def check_doors(report, poses, space, closings):
         within = None
         for now, places in poses.steps:
             if begin < now <= end:
-                away = shapely.distance(shapely.points(places), space.doors[door])
+                away = shapely.distance(shapely.points(np.nan_to_num(places, nan=FAR_M)), space.doors[door])
                 there = set(np.flatnonzero(away < RADIUS_M - 1e-3).tolist())
                 stops = within is None or now <= begin + STOPS_S
                 report.check(stops or there <= within, f"{there} enter {door}, closed, at {now:.1f} s")
@@ -148,8 +148,8 @@ def check_lost(report, simulation, script, space):
 
 
 def _may_stand(kind, places):
-    """Where a robot that is down may be for all that is known."""
-    yield from places
+    """Where a robot that is down may be for all that is known; one that was taken away is nowhere."""
+    yield from () if kind == "removed" else places
     if kind in UNHEARD_M:
         for away_m in np.linspace(UNHEARD_M[kind] / 4, UNHEARD_M[kind], 4):
             for angle in np.linspace(0, 2 * np.pi, 16, endpoint=False):

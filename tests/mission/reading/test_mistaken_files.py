@@ -3,7 +3,6 @@
 import json
 
 import pytest
-from tests.muster_files.sites import writers
 
 import muster
 from muster.mission.errors import MissionError
@@ -36,14 +35,6 @@ def test_a_file_of_another_program_is_named(name, text, said, tmp_path):
         muster.load(tmp_path / name)
     assert str(error.value).startswith(f"{tmp_path / name}: {said}; expected ")
     assert "\n" not in str(error.value)
-
-
-def test_a_route_graph_is_no_site(tmp_path):
-    edge = writers.feature("MultiLineString", [[[0, 0], [0, 9]]], **EDGE)
-    (tmp_path / "graph.geojson").write_text(writers.geojson(writers.feature("Point", [0, 0], **GRAPH), edge), "utf-8")
-    (tmp_path / "robots.csv").write_text("id,x,y\nr_0,0,0\n", encoding="utf-8")
-    with pytest.raises(MissionError, match=r"graph.geojson:\d+: features: a route graph of Nav2 \(startid, endid\)"):
-        muster.read_site(tmp_path / "graph.geojson", robots=tmp_path / "robots.csv")
 
 
 def test_a_mission_with_faults_is_not_taken_for_another_file(tmp_path):

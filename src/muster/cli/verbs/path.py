@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from muster.cli.exits import DONE
-from muster.cli.options.common import MissionFile, format_option, mission_argument, quiet_option
+from muster.cli.options.common import Finite, MissionFile, format_option, mission_argument, quiet_option
 from muster.cli.outputs import require_csv, require_drawable, require_writable
 from muster.cli.verbs.smooth_path import bends_of, corners_of, require_turning_radius, smooth_path, write_trajectory
 from muster.mission.errors import ParameterError
@@ -76,7 +76,17 @@ _FILE = click.Path(path_type=File)
 @click.option(
     "--window", type=click.IntRange(min=2), metavar="N", help="Of --together: look at others for N steps only."
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of rrt-star and rrt.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of what is random.")
+@click.option(
+    "--joint",
+    is_flag=True,
+    help="Paths of all robots, step by step: of --scenario, or of --together on the roadmap.",
+)
+@click.option("--scenario", type=_FILE, metavar="FILE", help="Of --joint: starts and goals on a MovingAI map (.scen).")
+@click.option("--agents", type=click.IntRange(min=1), metavar="N", help="Of --joint: the first N.  [default: all]")
+@click.option("--time-limit", type=Finite(1e-3, 1e6), metavar="S", help="Of --joint, seconds.  [default: 10]")
+@click.option("--expansions", type=click.IntRange(min=1), metavar="N", help="Of --joint: end after N expansions.")
+@click.option("-o", "--output", type=_FILE, metavar="FILE", help="Of --joint: write the paths (.json, else text).")
 @format_option
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the path on the map (.png, .svg, .pdf).")
 @quiet_option
@@ -98,6 +108,12 @@ def command(
     cell: float | None,
     window: int | None,
     seed: int,
+    joint: bool,
+    scenario: File | None,
+    agents: int | None,
+    time_limit: float | None,
+    expansions: int | None,
+    output: File | None,
     form: str,
     plot: File | None,
     quiet: bool,
@@ -107,12 +123,29 @@ def command(
 
     `shortest` is the path that plans are made of: the shortest at any angle. That there is no path is an answer, with
     the reason, and no error. Without a map the path is straight. With --together it finds paths of several robots in
-    space and time, on which they do not touch.
+    space and time, on which they do not touch. With --joint
+    MISSION may be a MovingAI map (.map).
     """
-    require_writable(None, (plot, trajectory), mission.files, ())
+    require_writable(output, (plot, trajectory), (*mission.files, scenario), ())
     require_drawable(plot)
     require_csv(trajectory, "--trajectory")
     require_turning_radius(turning_radius)
+    of_joint = {
+        "--scenario": scenario,
+        "--agents": agents,
+        "--time-limit": time_limit,
+        "--expansions": expansions,
+        "--output": output,
+    }
+    if joint:
+        from muster.cli.verbs import path_joint
+
+        if mission.name.endswith(".map"):
+            instance = path_joint.of_map(File(mission.name), scenario, agents)
+        else:
+            instance = path_joint.of_mission(mission, together, agents, verbose=verbose)
+        return path_joint.run(instance, path_joint.Limits(time_limit, expansions, seed), form, output, plot)
+    _require_none(of_joint, "--joint")
     loaded = mission.load(verbose=verbose)
     if together:
         from muster.cli.verbs.path_together import run
@@ -144,6 +177,12 @@ def command(
     else:
         _print(found, loaded, body, planner, driven)
     return DONE
+
+
+def _require_none(options: dict[str, Any], beside: str) -> None:
+    for option, value in options.items():
+        if value is not None:
+            raise ParameterError(f"{option}: {value}; expected {beside} beside it")
 
 
 def _world(mission: Mission) -> World | None:

@@ -21,7 +21,7 @@ def run(mission: Mission, told: tuple[str, ...], cell: float | None, window: int
 
     if mission.map is None:
         raise ParameterError("--together: the mission has no map; expected one")
-    goals = _goals(mission, told)
+    goals = goals_of(mission, told)
     robots = {robot.id: robot for robot in mission.robots if robot.id in goals}
     kinds = {robot.kind for robot in robots.values()}
     if len(kinds) > 1:
@@ -46,7 +46,8 @@ def run(mission: Mission, told: tuple[str, ...], cell: float | None, window: int
     return DONE
 
 
-def _goals(mission: Mission, told: tuple[str, ...]) -> dict[str, tuple[float, float]]:
+def goals_of(mission: Mission, told: tuple[str, ...]) -> dict[str, tuple[float, float]]:
+    """Return the goal of each robot that ROBOT=X,Y names, metres in the map frame."""
     found: dict[str, tuple[float, float]] = {}
     known = [robot.id for robot in mission.robots]
     for text in told:

@@ -170,6 +170,9 @@ void bind_orders(nb::class_<CrowdWorld>& crowd) {
           "steps"_a, "motions"_a, "Continue another world from a step, with a row of `motions` for each robot.")
       .def("fail", &CrowdWorld::fail, "robot"_a)
       .def("recover", &CrowdWorld::recover, "robot"_a)
+      .def(
+          "place", [](CrowdWorld& w, int robot, PlaceArray position) { w.place(robot, {position}); }, "robot"_a,
+          "position"_a, "Puts a robot elsewhere: it stands there, without an order.")
       .def("slow", &CrowdWorld::slow, "robot"_a, "factor"_a)
       .def("leave_to_traffic", &CrowdWorld::leave_to_traffic, "robot"_a)
       .def(

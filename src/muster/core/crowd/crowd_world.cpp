@@ -106,6 +106,23 @@ void CrowdWorld::fail(int i) {
   robots_[i].phase = Phase::idle;
 }
 
+void CrowdWorld::place(int i, const Vec<3>& position) {
+  CrowdRobot& robot = robots_[i];
+  robot.position = robot.post = position;
+  robot.velocity = robot.velocity_before = robot.commanded = robot.short_of = {};
+  robot.ahead = robot.yaw_rate = robot.turn_short_of = robot.approach = 0.0;
+  robot.way.clear();
+  robot.aside.clear();
+  robot.reference = {};
+  robot.next = 0;
+  robot.phase = Phase::idle;
+  robot.stopping = robot.waits = false;
+  robot.patience = {};
+  robot.trail = {position, {}, false};
+  robot.asked_until = kBeforeAll;
+  collect_walls(robot);
+}
+
 std::vector<CrowdEvent> CrowdWorld::advance(double until) {
   events_.clear();
   while (events_.empty() && time() + settings_.dt <= until + 1e-6 * settings_.dt) step();

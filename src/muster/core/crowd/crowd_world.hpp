@@ -94,6 +94,8 @@ class CrowdWorld {
   void follow(int i, Reference reference);
   void fail(int i);
   void recover(int i) { robots_[i].failed = false; }
+  // Somebody puts a robot elsewhere: it stands there, without an order.
+  void place(int i, const Vec<3>& position);
   void slow(int i, double factor) { robots_[i].slowed = factor; }
   void leave_to_traffic(int i) { robots_[i].in_traffic = true; }
   // A world that continues another: its clock, and how each robot moved; none has an order.

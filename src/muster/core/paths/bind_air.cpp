@@ -31,14 +31,6 @@ Rings rings_of(const std::vector<PointArray>& arrays) {
   return Rings(std::move(rings));
 }
 
-std::vector<Spot> spots_of(const PointArray& array) {
-  if (array.ndim() != 2 || array.shape(1) != 3) throw std::invalid_argument("an array of places must be (n, 3)");
-  std::vector<Spot> spots(array.shape(0));
-  for (std::size_t k = 0; k < spots.size(); ++k)
-    spots[k] = {array.data()[3 * k], array.data()[3 * k + 1], array.data()[3 * k + 2]};
-  return spots;
-}
-
 Table air_lengths(const AirWays& ways, const PointArray& places, int first, int last, int threads) {
   const std::vector<Spot> spots = spots_of(places);
   if (first < 0 || last < first || last > static_cast<int>(spots.size())) {

@@ -88,9 +88,9 @@ void bind_problem(nb::module_& m) {
              Numbers available_from, Flags must_end, Indices fixed, Numbers actuation_cost, Indices work_class,
              Numbers work_seconds, Indices time_class, Numbers priority, Indices kind, Flags allowed,
              const std::vector<std::vector<int>>& prerequisites, Numbers entry, Numbers exit, Indices place_class,
-             Numbers table, Indices travel_class, const Openings& openings, Numbers ends_by, Numbers due,
-             Numbers over_by, Numbers lasts_most, const Openings& spans, Numbers gap_least, Numbers gap_most,
-             Indices unit, const Parts& parts, Numbers abilities, Numbers needs,
+             Numbers table, Indices travel_class, Numbers seconds, const Openings& openings, Numbers ends_by,
+             Numbers due, Numbers over_by, Numbers lasts_most, const Openings& spans, Numbers gap_least,
+             Numbers gap_most, Indices unit, const Parts& parts, Numbers abilities, Numbers needs,
              const std::vector<std::vector<int>>& exclusive, const std::vector<std::vector<int>>& same_crew,
              const std::vector<std::vector<int>>& apart, Indices least_stops, Numbers acceleration, Numbers climb,
              Numbers turn, bool over_map, bool makespan_includes_return, int meters, Numbers load, Numbers pending,
@@ -122,6 +122,7 @@ void bind_problem(nb::module_& m) {
             data.place_class.assign(place_class.data(), place_class.data() + place_class.size());
             data.table = numbers(table);
             data.travel_class.assign(travel_class.data(), travel_class.data() + travel_class.size());
+            data.seconds = numbers(seconds);
             data.openings = openings_of(openings);
             data.ends_by = numbers(ends_by);
             data.due = numbers(due);
@@ -162,18 +163,19 @@ void bind_problem(nb::module_& m) {
           nb::kw_only(), "objective"_a, "usage_is_time"_a, "capacity"_a, "speed"_a, "available_from"_a, "must_end"_a,
           "fixed"_a, "actuation_cost"_a, "work_class"_a, "work_seconds"_a, "time_class"_a, "priority"_a, "kind"_a,
           "allowed"_a, "prerequisites"_a, "entry"_a, "exit"_a, "place_class"_a, "table"_a, "travel_class"_a,
-          "openings"_a, "ends_by"_a, "due"_a, "over_by"_a, "lasts_most"_a, "spans"_a, "gap_least"_a, "gap_most"_a,
-          "unit"_a, "parts"_a, "abilities"_a, "needs"_a, "exclusive"_a, "same_crew"_a, "apart"_a, "least_stops"_a,
-          "acceleration"_a, "climb"_a, "turn"_a, "over_map"_a, "makespan_includes_return"_a, "meters"_a, "load"_a,
-          "pending"_a, "pickup"_a, "most_aboard"_a, "aboard_at_start"_a, "pending_at_start"_a, "energy"_a,
-          "energy_at_start"_a, "stations"_a, "calls"_a, "over"_a, "waiting"_a, "waits"_a,
+          "seconds"_a, "openings"_a, "ends_by"_a, "due"_a, "over_by"_a, "lasts_most"_a, "spans"_a, "gap_least"_a,
+          "gap_most"_a, "unit"_a, "parts"_a, "abilities"_a, "needs"_a, "exclusive"_a, "same_crew"_a, "apart"_a,
+          "least_stops"_a, "acceleration"_a, "climb"_a, "turn"_a, "over_map"_a, "makespan_includes_return"_a,
+          "meters"_a, "load"_a, "pending"_a, "pickup"_a, "most_aboard"_a, "aboard_at_start"_a, "pending_at_start"_a,
+          "energy"_a, "energy_at_start"_a, "stations"_a, "calls"_a, "over"_a, "waiting"_a, "waits"_a,
           "Robots (m), tasks (n) and travel: `fixed` is (m,), how many tasks at the beginning of a route stay; "
           "`actuation_cost` is (work classes, n) and `work_class` (m,); `work_seconds` is (time classes, n) and "
           "`time_class` (m,); `kind` is (m,) and `allowed` (kinds, n); `entry` and `exit` are (place classes, n + 2m, "
           "3) metres in the map frame for tasks, starts and ends of robots, and `place_class` is (m,); `table`, where "
           "ways are not straight, is (classes, n + 2m, n + 2m) metres with each "
           "robot's "
-          "`travel_class`. What is empty of the rest no task or robot has: by task `openings`, `ends_by`, `due`, "
+          "`travel_class`; `seconds`, of its shape, how long ways take where metres do not tell. What is empty of the "
+          "rest no task or robot has: by task `openings`, `ends_by`, `due`, "
           "`unit` "
           "(tasks of one begin together), `parts` of teams (count, allowed by kind), `exclusive`, `same_crew`, "
           "`apart`; by "
@@ -188,7 +190,8 @@ void bind_problem(nb::module_& m) {
           "`most_aboard` and `aboard_at_start` (m, meters); `energy` and `energy_at_start` (m,) in the unit of "
           "usage, the reserve taken off, inf without a limit of energy; `stations` (refill by second, swap_s, unloads, "
           "partial, "
-          "slots), whose places stand after the ends of robots; `over` (n,) marks tasks that stand for what was done, before "
+          "slots), whose places stand after the ends of robots; `over` (n,) marks tasks that stand for what was done, "
+          "before "
           "which no station is called at; `waiting` (n + 2m, n + 2m) seconds for others between "
           "places, of the robots "
           "that "

@@ -42,7 +42,7 @@ Problem::Problem(ProblemData data)
       places_(tasks_ + 2 * robots_ + static_cast<int>(data_.stations.size())),
       classes_(1),
       given_table_(!data_.table.empty()),
-      steady_(data_.turn.empty() && data_.waiting.empty()),
+      steady_(data_.turn.empty() && data_.seconds.empty() && data_.waiting.empty()),
       usage_is_metres_(!data_.usage_is_time && data_.waiting.empty()) {
   const auto tasks = static_cast<std::size_t>(tasks_), robots = static_cast<std::size_t>(robots_);
   const auto places = static_cast<std::size_t>(places_);
@@ -78,6 +78,7 @@ Problem::Problem(ProblemData data)
     require(std::ranges::all_of(data_.travel_class, [](int c) { return c >= 0; }), "a travel class is negative");
     classes_ = 1 + *std::ranges::max_element(data_.travel_class);
     require(data_.table.size() == classes_ * places * places, "the travel table has the wrong size");
+    require(data_.seconds.empty() || data_.seconds.size() == data_.table.size(), "the times do not fit the table");
   }
   check_times();
   check_goods();
@@ -110,8 +111,9 @@ bool Problem::find_symmetric() const {
   if (!data_.waiting.empty() && !same_back(data_.waiting.data())) return false;
   for (std::size_t at = 0; at < data_.table.size(); at += places * places) {
     if (!same_back(&data_.table[at])) return false;
+    if (!data_.seconds.empty() && !same_back(&data_.seconds[at])) return false;
   }
-  if (!data_.table.empty() && data_.turn.empty()) return true;
+  if (!data_.table.empty() && (data_.turn.empty() || !data_.seconds.empty())) return true;
   for (std::size_t first = 0; first < data_.entry.size(); first += 3 * places) {
     const auto tasks = static_cast<std::ptrdiff_t>(3) * tasks_;
     if (!std::equal(&data_.entry[first], &data_.entry[first] + tasks, &data_.exit[first])) return false;
@@ -306,6 +308,10 @@ bool Problem::same_ends(int robot, int other) const {
 }
 
 double Problem::leg_seconds(int robot, int from, int to, double metres) const {
+  if (!data_.seconds.empty()) {
+    const std::size_t row = static_cast<std::size_t>(travel_class(robot)) * places_ + from;
+    return data_.seconds[row * places_ + to] + waiting(robot, from, to);
+  }
   const double driven = data_.turn.empty() ? metres / data_.speed[robot] : profile_seconds(robot, from, to, metres);
   return driven + waiting(robot, from, to);
 }

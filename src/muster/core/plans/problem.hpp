@@ -71,6 +71,8 @@ struct ProblemData {
   std::vector<int> place_class;
   std::vector<double> table;
   std::vector<int> travel_class;
+  // How long these ways take, as the table has them: where neither their metres nor their ends tell. Empty: these do.
+  std::vector<double> seconds;
   // Times, teams and relations; what is empty, no task or robot has.
   std::vector<std::vector<Opening>> openings;  // by task, sorted
   std::vector<double> ends_by, due;            // by task; inf: none

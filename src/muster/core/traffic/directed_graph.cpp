@@ -73,19 +73,4 @@ std::vector<double> DirectedGraph::costs_to(int goal) const {
   return found;
 }
 
-std::vector<int> DirectedGraph::steps_to(int goal) const {
-  std::vector<int> found(size(), kNoWay), queue{goal};
-  found[goal] = 0;
-  for (std::size_t k = 0; k < queue.size(); ++k) {
-    const int at = queue[k];
-    for (const int e : entering(at)) {
-      const int from = tail(e);
-      if (found[from] != kNoWay) continue;
-      found[from] = found[at] + 1;
-      queue.push_back(from);
-    }
-  }
-  return found;
-}
-
 }  // namespace muster

@@ -33,9 +33,7 @@ class DirectedGraph {
 
   // What it costs to come to `goal` from each vertex; infinite where there is no way. Dijkstra's algorithm backwards.
   std::vector<double> costs_to(int goal) const;
-  // The number of edges on the way with the fewest; kNoWay where there is none.
-  static constexpr int kNoWay = 1 << 29;
-  std::vector<int> steps_to(int goal) const;
+  static constexpr int kNoWay = 1 << 29;  // a number of steps, or a cost, where there is no way
 
  private:
   std::vector<int> first_, heads_, tails_;

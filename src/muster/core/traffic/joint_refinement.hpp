@@ -1,70 +1,59 @@
 // Better paths from paths: large neighbourhood search [li2021].
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "random.hpp"
-#include "traffic/directed_graph.hpp"
+#include "traffic/goal_distances.hpp"
 #include "traffic/lacam.hpp"
+#include "traffic/path_table.hpp"
 
 namespace muster {
 
-// Takes the paths of a few robots that are in each other's way out, and plans these robots anew one after another, in
-// space and time past the others; keeps what has a lower sum of costs: steps until a robot rests at its goal for good.
-// No path becomes longer than the longest at first.
+// Removes the paths of a few robots, plans these robots again one after another past the others, and keeps what has no
+// higher sum of costs: steps until a robot rests at its goal for good. Which robots they are, three rules propose in
+// turn, and those that lower the sum more propose more often.
 class JointRefinement {
  public:
   // `steps` are the vertices of all robots, step by step; the last are the goals. Throws std::invalid_argument where
-  // they are no paths, or two robots are at one vertex.
-  JointRefinement(std::shared_ptr<const DirectedGraph> graph, const std::vector<Configuration>& steps,
+  // they are no paths, or two robots are at one vertex or change places.
+  JointRefinement(std::shared_ptr<GoalDistances> distances, const std::vector<Configuration>& steps,
                   std::uint64_t seed);
 
   void advance(int neighbourhoods);
-  int cost() const;
+  int cost() const { return cost_; }
   std::vector<Configuration> solution() const;
 
  private:
-  using Path = std::vector<int>;  // the vertex at each step, as far as it moves
+  using Path = PathTable::Path;
+  enum Rule { kDelayed, kCrossing, kAny, kRules };
 
-  int robots() const { return static_cast<int>(paths_.size()); }
-  int at(int robot, int step) const {
-    const Path& path = paths_[robot];
-    return path[std::min<std::size_t>(step, path.size() - 1)];
-  }
-  int& standing(int step, int vertex) { return standing_[static_cast<std::size_t>(step) * graph_->size() + vertex]; }
-  const std::vector<int>& to_goal(int robot) {
-    return tables_.to(goals_[robot], [this](int goal) { return graph_->steps_to(goal); });
-  }
-  void neighbourhood(std::vector<int>& chosen);
+  int robots() const { return table_.robots(); }
+  int way(int robot) const { return table_.distances().to_goal(robot, starts_[robot]); }
+  int delay(int robot) const { return table_.cost(robot) - way(robot); }
   void refine();
-  void put(int robot);
-  void take(int robot);
-  bool replan(int robot);
-  int free_from(int robot);
-  void expand(int robot, int step, int vertex, std::span<const int> to_goal);
+  bool replan();
+  Rule rule();
+  void choose(Rule rule, int size);
+  int delayed_robot();
+  void walk(int robot, int size);
+  void gather(int vertex, int size);
+  void add(int robot);
 
-  static constexpr int kNobody = -1;
-  static constexpr int kMost = 16;  // robots that are planned anew at once
+  static constexpr int kMost = 16;  // robots that are planned again at once
 
-  std::shared_ptr<const DirectedGraph> graph_;
   Random random_;
-  int last_step_;
-  std::vector<int> goals_;
-  std::vector<Path> paths_;
-  GoalTables<std::vector<int>> tables_;
-  std::vector<int> standing_;  // the robot at each vertex at each step
-
-  // The search of one robot: open states by the step at which the goal could be reached.
-  struct State {
-    int step, vertex;
-  };
-  std::vector<std::vector<State>> open_;
-  std::vector<int> before_, found_in_;  // by step and vertex
-  int search_ = 0;
+  Configuration starts_;
+  PathTable table_;
+  int cost_ = 0;
+  std::array<double, kRules> weights_{1, 1, 1};
+  std::vector<int> crossings_;  // vertices where more than two edges begin
+  std::vector<int> chosen_, visitors_;
+  std::vector<int> chosen_in_, seen_in_;  // by robot, by vertex: the last round or search in which it was found
+  int round_ = 0, search_ = 0;
 };
 
 }  // namespace muster

@@ -5,19 +5,16 @@
 
 namespace muster {
 
-Pibt::Pibt(const DirectedGraph& graph, std::vector<int> goals, std::uint64_t seed)
-    : graph_(graph),
-      goals_(std::move(goals)),
+Pibt::Pibt(std::shared_ptr<GoalDistances> distances, std::uint64_t seed)
+    : distances_(std::move(distances)),
+      followed_(distances_->goals().size(), distances_.get()),
+      graph_(distances_->graph()),
       random_(seed),
-      now_(graph.size(), kNobody),
-      next_(graph.size(), kNobody),
-      width_(graph.most_neighbours() + 1),
-      candidates_(goals_.size() * width_),
-      keys_(graph.size()) {
-  for (const int goal : goals_) {
-    distances_.push_back(&tables_.to(goal, [&](int to) { return graph_.steps_to(to); }));
-  }
-}
+      now_(graph_.size(), kNobody),
+      next_(graph_.size(), kNobody),
+      width_(graph_.most_neighbours() + 1),
+      candidates_(static_cast<std::size_t>(distances_->robots()) * width_),
+      keys_(graph_.size()) {}
 
 bool Pibt::step(const Places& from, Places& to, std::span<const int> order) {
   for (int i = 0; i < robots(); ++i) now_[from[i]] = i;
@@ -126,7 +123,7 @@ std::pair<int, int> Pibt::ways_on(int at, int behind) const {
   int ways = 0, on = at;
   for (const int there : graph_.neighbours(at)) {
     const int who = now_[there];
-    const bool rests = graph_.neighbours(there).size() == 1 && who != kNobody && goals_[who] == there;
+    const bool rests = graph_.neighbours(there).size() == 1 && who != kNobody && goal(who) == there;
     if (there == behind || rests) continue;
     ++ways;
     on = there;

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "random.hpp"
 #include "traffic/directed_graph.hpp"
+#include "traffic/goal_distances.hpp"
 
 namespace muster {
 
@@ -17,14 +19,14 @@ constexpr int kUndecided = -1;
 
 class Pibt {
  public:
-  Pibt(const DirectedGraph& graph, std::vector<int> goals, std::uint64_t seed);
-  Pibt(const Pibt&) = delete;  // distances_ point into tables_
-  Pibt(Pibt&&) = default;
+  Pibt(std::shared_ptr<GoalDistances> distances, std::uint64_t seed);
 
-  int robots() const { return static_cast<int>(goals_.size()); }
-  // The number of steps from a vertex to the goal of a robot.
-  int distance(int robot, int vertex) const { return (*distances_[robot])[vertex]; }
-  int goal(int robot) const { return goals_[robot]; }
+  int robots() const { return distances_->robots(); }
+  // What a robot descends: the distance of a vertex from its goal.
+  int distance(int robot, int vertex) const { return followed_[robot]->to_goal(robot, vertex); }
+  // From now on a robot descends these distances to the same goals.
+  void follow(int robot, GoalDistances& distances) { followed_[robot] = &distances; }
+  int goal(int robot) const { return distances_->goal(robot); }
   const DirectedGraph& graph() const { return graph_; }
 
   // Decides the next vertex of each robot that is kUndecided in `to`, those first in `order` first. False where what
@@ -44,10 +46,9 @@ class Pibt {
 
   static constexpr int kNobody = -1;
 
-  const DirectedGraph& graph_;
-  std::vector<int> goals_;
-  GoalTables<std::vector<int>> tables_;
-  std::vector<const std::vector<int>*> distances_;
+  std::shared_ptr<GoalDistances> distances_;
+  std::vector<GoalDistances*> followed_;  // by robot
+  const DirectedGraph& graph_;            // of distances_
   Random random_;
   std::vector<int> now_, next_;  // the robot at each vertex
   int width_;                    // most candidates of a robot

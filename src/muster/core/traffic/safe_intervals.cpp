@@ -17,6 +17,7 @@ namespace {
 constexpr double kIntervalRounding = 1e-9;
 constexpr double kNearly = 1e-6;                // metres by which two may be nearer
 constexpr double kRestingInTheWay = 10.0;       // seconds that a path may be longer to rest out of the way
+constexpr double kRestingAtAStop = 60.0;        // the same where another has to stop
 constexpr std::size_t kMostKnown = 20'000'000;  // edges from which it is known how long goals take
 
 }  // namespace
@@ -25,6 +26,7 @@ SafeIntervals::SafeIntervals(std::shared_ptr<const AnnotatedRoadmap> roadmap, st
     : roadmap_(std::move(roadmap)),
       rests_(std::move(rests)),
       margin_(margin),
+      wanted_(points()),
       stays_(points()),
       passes_(points()),
       safe_(points()),
@@ -72,6 +74,17 @@ void SafeIntervals::Least::clear() {
 void SafeIntervals::clear() {
   for (auto& stays : stays_) stays.clear();
   for (auto& passes : passes_) passes.clear();
+  std::ranges::fill(wanted_, 0);
+}
+
+void SafeIntervals::want(const Traveller& who) {
+  for (const Stop& stop : who.stops) ++wanted_[stop.point];
+}
+
+double SafeIntervals::resting(const Traveller& who, int point) const {
+  const auto own = std::ranges::count(who.stops, point, &Stop::point);
+  if (wanted_[point] > own) return kRestingAtAStop;
+  return rests_[point] ? 0.0 : kRestingInTheWay;
 }
 
 double SafeIntervals::apart(const Traveller& who, double radius) const {
@@ -166,6 +179,12 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
   std::vector<double> after(legs + 1, 0.0);  // seconds from one stop to when it has held at the last, alone
   for (int leg = legs - 1; leg > 0; --leg)
     after[leg] = to_stop[leg]->from_point(who.stops[leg - 1].point) + held_after(leg) + after[leg + 1];
+  double least = who.ready;  // when it can be at a stop, were it alone
+  for (int leg = 0; leg < legs; ++leg) {
+    least += to_stop[leg]->from_point(leg == 0 ? who.start : who.stops[leg - 1].point) + held_after(leg);
+    const std::vector<Span>& at_stop = safe(who, who.stops[leg].point);
+    if (at_stop.empty() || at_stop.back().until < least) return std::nullopt;  // others stay there then
+  }
   const auto remaining = [&](const Label& label, int point, bool stands) {
     if (label.leg >= legs) return 0.0;
     SecondsToGoal& to = *to_stop[label.leg];
@@ -178,7 +197,10 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
     int label;
     bool rest;
   };
-  Heap<Item> queue;
+  // Of each leg: the search keeps to the last leg that it has come to, and goes back where nothing leads on from there.
+  // So a delay on one leg is not met by trying all that takes as long on the legs before.
+  std::vector<Heap<Item>> queues(legs + 1);
+  int leg_now = 0;
   by_edge_.clear();
   by_point_.clear();
   // Who comes this much later in the same interval is no better whatever way it faces.
@@ -193,7 +215,8 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
     by_edge = label.ready;
     at_point = std::min(at_point, label.ready);
     labels.push_back(label);
-    queue.push({label.key, static_cast<int>(labels.size()) - 1, false});
+    queues[label.leg].push({label.key, static_cast<int>(labels.size()) - 1, false});
+    leg_now = std::max(leg_now, label.leg);
   };
   const Span start{-kNever, leaves_by(who)};
   const auto interval_of = [&](const Label& label) {
@@ -202,8 +225,12 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
   offer({0.0, who.ready, 0, -1, -1, -1, 0.0}, who.start);
   const bool rests = legs == 0 || !who.stays;
   int found = -1, there_first = -1;
-  while (!queue.empty()) {
-    const Item item = queue.pop();
+  while (leg_now >= 0) {
+    if (queues[leg_now].empty()) {
+      --leg_now;
+      continue;
+    }
+    const Item item = queues[leg_now].pop();
     const Label label = labels[item.label];
     if (item.rest) {
       found = item.label;
@@ -225,14 +252,15 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
         if (last && who.stays) {
           on.key = held;
           labels.push_back(on);
-          queue.push({held, static_cast<int>(labels.size()) - 1, true});
+          queues[legs].push({held, static_cast<int>(labels.size()) - 1, true});
+          leg_now = legs;
         } else {
           offer(on, point);
         }
       }
     }
     if (label.leg == legs && rests && here.until == kNever)
-      queue.push({label.ready + (rests_[point] ? 0.0 : kRestingInTheWay), item.label, true});
+      queues[legs].push({label.ready + resting(who, point), item.label, true});
     for (int edge = graph.begin(point); edge < graph.end(point); ++edge) {
       const double angle = label.edge < 0 ? roadmap_->turn_from(who.heading, edge) : roadmap_->turn(label.edge, edge);
       const double turning = stands(label) ? manner.setting_out(angle) : manner.turning(angle);

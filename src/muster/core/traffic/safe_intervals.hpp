@@ -57,6 +57,8 @@ class SafeIntervals {
 
   // Nobody is on the roadmap.
   void clear();
+  // A robot has to get to its stops: others had better not rest there.
+  void want(const Traveller& who);
   // The earliest way among all who are on it; one that stays at its start where there is none.
   Way way(const Traveller& who);
   // A robot, by its number, goes that way; it may not be on the roadmap yet.
@@ -89,6 +91,8 @@ class SafeIntervals {
 
   double apart(const Traveller& who, double radius) const;
   double tail(const Traveller& who) const;
+  // Seconds that a path may be longer so that a robot rests elsewhere in the end.
+  double resting(const Traveller& who, int point) const;
   SecondsToGoal& seconds_to(const Manner& manner, int goal);
   std::optional<Way> path(const Traveller& who);
   void erase_stays(int robot, int point);
@@ -117,6 +121,7 @@ class SafeIntervals {
   std::shared_ptr<const AnnotatedRoadmap> roadmap_;
   std::vector<bool> rests_;
   double margin_;
+  std::vector<int> wanted_;  // how many stops are at each point
   std::vector<std::vector<Stay>> stays_;
   std::vector<std::vector<Pass>> passes_;
   std::vector<std::vector<Span>> safe_;

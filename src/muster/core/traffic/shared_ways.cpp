@@ -65,6 +65,7 @@ void SharedWays::change(const std::vector<std::pair<int, Traveller>>& changes, i
 
 void SharedWays::clear() {
   roadmap_.clear();
+  for (const Traveller& who : now_.travellers) roadmap_.want(who);
   for (int k = 0; k < static_cast<int>(now_.travellers.size()); ++k)
     if (now_.travellers[k].fixed) roadmap_.reserve(k, now_.travellers[k], now_.ways[k]);
 }

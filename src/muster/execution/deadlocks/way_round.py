@@ -7,9 +7,9 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise, product
 
 from muster.execution.robots.monitor import distance_to_piece
-from muster.execution.robots.task_motion import Way, along, path_length
+from muster.execution.robots.task_motion import Way, path_length, places_of
 from muster.mission.model import Robot
-from muster.motion.port import Place
+from muster.motion.port import Place, Waypoint
 
 _TIMES_APART = (1.2, 1.5, 2.0)
 """How far from the middle of the one to get round the way may turn, in distances at which the two touch."""
@@ -24,7 +24,7 @@ Standing = tuple[Place, float]
 
 def way_round(
     way: Way, robot: Robot, start: Place, goal: Place, about: Standing, others: Collection[Standing]
-) -> Sequence[Place] | None:
+) -> Sequence[Waypoint] | None:
     """The shortest way that turns near a robot that stands there, and keeps clear of this and others; or None."""
     from scipy.sparse import csr_matrix
     from scipy.sparse.csgraph import dijkstra
@@ -34,14 +34,14 @@ def way_round(
     pieces = {}
     for a, b in _joined(list(turns)):
         piece = way(robot, places[a], places[b])
-        if piece is not None and _is_clear(robot, start, [places[a], *piece], (about, *others)):
+        if piece is not None and _is_clear(robot, start, [places[a], *places_of(piece)], (about, *others)):
             pieces[a, b] = piece
     if not pieces:
         return None
-    lengths = [path_length(places[a], along(piece)) for (a, _), piece in pieces.items()]
+    lengths = [path_length(places[a], piece) for (a, _), piece in pieces.items()]
     graph = csr_matrix((lengths, tuple(zip(*pieces, strict=True))), shape=(len(places), len(places)))
     _, before = dijkstra(graph, indices=0, return_predecessors=True)
-    at, found = len(places) - 1, list[Place]()
+    at, found = len(places) - 1, list[Waypoint]()
     while before[at] >= 0:
         found, at = [*pieces[before[at], at], *found], before[at]
     return found or None
@@ -49,14 +49,14 @@ def way_round(
 
 def way_aside(
     way: Way, robot: Robot, start: Place, needed: Sequence[Place], radius_m: float, others: Collection[Standing]
-) -> Sequence[Place] | None:
+) -> Sequence[Waypoint] | None:
     """The way to a near place beside a way that another, of a radius, needs; clear of others who stand; or None."""
     apart_m = robot.radius_m + radius_m + _SPARE_M
     for times, direction in product(_TIMES_ASIDE, range(_TURNS)):
         place = _beside(start, times * apart_m, direction)
         aside_m = min(distance_to_piece(place, *piece) for piece in pairwise(needed))
         found = way(robot, start, place) if aside_m >= apart_m else None
-        if found is not None and _is_clear(robot, start, [start, *found], others):
+        if found is not None and _is_clear(robot, start, [start, *places_of(found)], others):
             return found
     return None
 

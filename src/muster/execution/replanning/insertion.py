@@ -22,10 +22,8 @@ from muster.execution.replanning.reallocation import (
 )
 from muster.execution.replanning.remaining_problem import RemainingMission, remaining_problem
 from muster.execution.replanning.travel import Travel
+from muster.execution.replanning.worthwhile import worthwhile
 from muster.model.problem import Problem
-
-_BETTER = 1e-6
-"""By which share of the objective routes must be better to be taken over."""
 
 
 @dataclass(frozen=True)
@@ -51,10 +49,11 @@ class Insertion:
         return revision_of(rest, what, routes, forced)
 
     def merged(self, rest: RemainingMission, found: Mapping[str, Sequence[str]]) -> Revision | None:
-        """Routes that a search found some time ago, made to fit what is now; None if they are no better.
+        """Routes that a search found some time ago, made to fit what is now; None if they are not worth it.
 
-        Tasks that have begun or are gone meanwhile drop out, tasks that came are put in. As few tasks go to another
-        robot as `rules.stability` allows.
+        Robots without such a route keep theirs. Tasks that have begun or are gone meanwhile drop out, tasks that came
+        are put in. No more tasks go to another robot than `rules.stability` allows, none for less than a gain, and
+        none whose robot is nearly there (see `worthwhile`).
         """
         if not rest.crew:
             return None
@@ -62,10 +61,8 @@ class Insertion:
         problem = what.problem.ready()
         now = admissible_part(problem, routes_before(problem, rest))
         then = _filled(problem, routes_before(problem, replace(rest, routes=_still_to_do(rest, found))))
-        if not _is_better(problem, then, now):
-            return None
-        revision, most = revision_of(rest, what, then, ()), rest.mission.rules.stability
-        return revision if most is None or len(revision.moved) <= most else None
+        best = worthwhile(problem, now, then, rest.headings, most=rest.mission.rules.stability)
+        return None if best == now else revision_of(rest, what, best, ())
 
 
 def _filled(problem: Problem, routes: Routes) -> Routes:
@@ -74,14 +71,9 @@ def _filled(problem: Problem, routes: Routes) -> Routes:
 
 
 def _still_to_do(rest: RemainingMission, found: Mapping[str, Sequence[str]]) -> dict[str, list[str]]:
-    """Of routes for a crew that may have changed what is left of them."""
+    """Of routes found for some of a crew that may have changed what is left of them, and those of the others."""
     there = {task.id for task in rest.tasks}
-    return {s.robot.id: [name for name in found.get(s.robot.id, ()) if name in there] for s in rest.crew}
-
-
-def _is_better(problem: Problem, then: Routes, now: Routes) -> bool:
-    """Whether routes complete more, or as much for a better objective."""
-    (weight, objective), (weight_now, objective_now) = problem.value(then), problem.value(now)
-    if weight != weight_now:
-        return weight > weight_now
-    return objective < objective_now - _BETTER * abs(objective_now)
+    came = {name for robot, route in found.items() for name in route if name not in rest.routes.get(robot, ())}
+    routes = {robot: [name for name in route if name not in came] for robot, route in rest.routes.items()}
+    routes |= {robot: list(route) for robot, route in found.items()}
+    return {one.robot.id: [name for name in routes[one.robot.id] if name in there] for one in rest.crew}

@@ -20,6 +20,7 @@ from muster.allocation.stop import Stop
 from muster.execution.replanning.remaining_problem import RemainingMission, RemainingProblem, remaining_problem
 from muster.execution.replanning.route_ahead import RouteAhead, route_ahead, stops_of
 from muster.execution.replanning.travel import Travel
+from muster.execution.replanning.worthwhile import worthwhile
 from muster.execution.robots.station_calls import Call
 from muster.mission.errors import ParameterError
 from muster.mission.plan import RouteStop, Unassigned, teams_of
@@ -55,6 +56,8 @@ class Revision:
         tasks that had no robot and have one now, and the other way round.
     left_out
         every open task that no robot does, and why.
+    is_part
+        whether it is a plan of some robots alone: the others go on as they did, and tasks left out before stay so.
     """
 
     routes: Mapping[str, tuple[str, ...]]
@@ -65,6 +68,7 @@ class Revision:
     dropped: tuple[str, ...]
     left_out: Mapping[str, str]
     calls: Mapping[str, tuple[Call, ...]] = field(default_factory=dict)
+    is_part: bool = False
 
     def difference(self) -> dict[str, Any]:
         """What has changed, as plain data: robots of tasks moved and added, reasons of tasks dropped."""
@@ -94,6 +98,8 @@ class Reallocation:
         plan so far, and a search begins at a low temperature for that; another one plans all that is left afresh.
     fill_waiting
         whether waiting is made less afterwards, by `rewiring`.
+    for_a_gain
+        whether a task changes robots only where that is worth it (see `worthwhile`), as in a search in the background.
 
     Raises
     ------
@@ -107,6 +113,7 @@ class Reallocation:
     allocator: Allocator = SEARCH
     parameters: Any = Parameters(**REPLANNING)
     fill_waiting: bool = False
+    for_a_gain: bool = False
 
     def __post_init__(self) -> None:
         if not self.allocator.keeps_fixed:
@@ -128,6 +135,8 @@ class Reallocation:
             routes, forced = self._stable(problem, start, _robots_of(problem, before), forced, stable)
         if self.fill_waiting:
             routes = rewired(problem, routes)
+        if self.for_a_gain:
+            routes = worthwhile(problem, start, routes, rest.headings)
         return revision_of(rest, what, routes, forced)
 
     def _stable(

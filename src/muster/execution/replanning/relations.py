@@ -41,9 +41,10 @@ class Binding:
 
 def binding_of(task: str, ledger: Ledger, under_way: Collection[str], robots: Mapping[str, Robot]) -> Binding:
     """The robots that tasks which have begun leave to one that the same robots do, or others."""
-    begun = {name: ledger.members(name) for name in (*ledger.ends_s, *under_way)}
-    same = {name: begun[name] for name in ledger.model.by_the_same(task) if name in begun}
-    others = {name: begun[name] for name in ledger.model.by_others(task) if name in begun}
+    same, others = (
+        {name: ledger.members(name) for name in related if name in ledger.ends_s or name in under_way}
+        for related in (ledger.model.by_the_same(task), ledger.model.by_others(task))
+    )
     reason = tied_to(same, others)
     only = next(iter(same.values()), None)
     unfit = "" if only is None else _why_not_by(task, ledger, [robots[name] for name in only])

@@ -9,17 +9,17 @@ and times are those of the whole mission, and prerequisites that have ended are 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from muster.allocation.fixed import admissible_alone, with_fixed_routes
+from muster.allocation.fixed import admissible_alone
 from muster.execution.replanning.relations import BY_WHICH_TASKS_ARE_BOUND, Binding
 from muster.execution.replanning.travel import Spot, Travel
+from muster.execution.replanning.worthwhile import Heading
 from muster.mission.goods import Amount, as_amount, by_commodity
 from muster.mission.model import Mission, Robot, Station, Task
-from muster.mission.plan import Plan, Route
 from muster.model.energy_under_way import Held, with_held
 from muster.model.measured_energy import EnergyLeft
 from muster.model.parts import Begun
@@ -59,6 +59,8 @@ class RobotSnapshot:
         what it has done by then, work under way included.
     left_s
         when it left its start; None: it has not.
+    heading
+        the task that it is on the way to, or waits at; None: there is none.
     """
 
     robot: Robot
@@ -72,6 +74,7 @@ class RobotSnapshot:
     load: Mapping[str, float] = field(default_factory=dict)
     done: tuple[Task, ...] = ()
     left_s: float | None = None
+    heading: Heading | None = None
 
     @property
     def has_past(self) -> bool:
@@ -130,6 +133,11 @@ class RemainingMission:
     objective: str | None = None
     on_duty: bool = False
 
+    @property
+    def headings(self) -> dict[str, Heading]:
+        """By robot that is on the way to a task, or waits at it, that task."""
+        return {one.robot.id: one.heading for one in self.crew if one.heading is not None}
+
 
 def frozen(rest: RemainingMission) -> RemainingMission:
     """The same, without anything that changes while the mission goes on: for another thread."""
@@ -174,8 +182,9 @@ def _problem_of(rest: RemainingMission, travel: Travel) -> RemainingProblem:
     energy_left = tuple(measured[robot.id] for robot in problem.robots)
     done = {past[s.robot.id].id: s.done for s in rest.crew if s.robot.id in past}
     problem = replace(problem, aboard=_aboard(rest, problem), energy_left=energy_left, past=done)
-    routes = tuple(Route(s.robot.id, (past[s.robot.id].id,) if s.robot.id in past else ()) for s in rest.crew)
-    return RemainingProblem(with_fixed_routes(_with_energy_to_end(problem, routes), Plan(routes=routes)), hopeless)
+    index = problem.task_index
+    began = tuple((index[past[robot.id].id],) if robot.id in past else () for robot in problem.robots)
+    return RemainingProblem(replace(_with_energy_to_end(problem, began), fixed=began), hopeless)
 
 
 def _with_energy(rest: RemainingMission, problem: Problem) -> Problem:
@@ -206,16 +215,15 @@ def _aboard(rest: RemainingMission, problem: Problem) -> tuple[tuple[int, ...], 
     return tuple(map(tuple, found)) if any(found) else ()
 
 
-def _with_energy_to_end(problem: Problem, past: Sequence[Route]) -> Problem:
+def _with_energy_to_end(problem: Problem, began: Sequence[Sequence[int]]) -> Problem:
     """Robots whose energy does not bring them to their ends, be it by way of a station, need not go there."""
     if not problem.levels:
         return problem
-    began = {route.robot: [problem.task_index[name] for name in route.tasks] for route in past}
     robots = list(problem.robots)
     for i, robot in enumerate(robots):
-        if math.isinf(problem.levels[i]) or robot.end_position is None or not began.get(robot.id):
+        if math.isinf(problem.levels[i]) or robot.end_position is None or not began[i]:
             continue
-        if not admissible_alone(problem, i, began[robot.id]):
+        if not admissible_alone(problem, i, began[i]):
             robots[i] = replace(robot, end_position=None)
     return replace(problem, robots=tuple(robots))
 
@@ -279,7 +287,9 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
             hopeless[task.id] = why
         else:
             hopeful[task.id] = _for_robots(task.waiting_for(_open_prerequisites(rest, task)), robots)
-    _drop_units_without_hope(rest, hopeful, hopeless)
+    model = UnderWay(rest.mission, rest.tasks, rest.ignored)
+    units = [unit for unit in {model.unit(task.id) for task in rest.tasks} if len(unit) > 1]
+    _drop_units_without_hope(units, hopeful, hopeless)
     _drop_transports_without_hope(rest, hopeful, hopeless)
     sure = {snapshot.task for snapshot in rest.crew if snapshot.task is not None}
     waiting = dict(hopeful)
@@ -291,7 +301,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
         before_it = ", ".join(other for other in task.prerequisites if other not in sure)
         hopeless[name] = f"prerequisite: {before_it} comes before it and is not going to be done"
     hopeful = {name: task for name, task in hopeful.items() if name in sure}
-    _drop_units_without_hope(rest, hopeful, hopeless)
+    _drop_units_without_hope(units, hopeful, hopeless)
     _drop_transports_without_hope(rest, hopeful, hopeless)
     return [tied_among(task, hopeful) for task in hopeful.values()], hopeless
 
@@ -306,10 +316,11 @@ def _open_prerequisites(rest: RemainingMission, task: Task) -> tuple[str, ...]:
     return tuple(name for name in task.prerequisites if name not in rest.ended)
 
 
-def _drop_units_without_hope(rest: RemainingMission, hopeful: dict[str, Task], hopeless: dict[str, str]) -> None:
+def _drop_units_without_hope(
+    units: Iterable[Sequence[str]], hopeful: dict[str, Task], hopeless: dict[str, str]
+) -> None:
     """Of tasks that begin together none is planned if one cannot be."""
-    model = UnderWay(rest.mission, rest.tasks, rest.ignored)
-    for unit in {model.unit(task.id) for task in rest.tasks}:
+    for unit in units:
         lost = [name for name in unit if name not in hopeful]
         for name in unit if lost else ():
             if hopeful.pop(name, None) is not None:
@@ -367,7 +378,8 @@ def _lasting(task: Task, duration_s: float) -> Task:
 def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
     """The mission of which the problem is made. Travel is handed to the problem apart."""
     mission, crew = rest.mission, [snapshot.robot.id for snapshot in rest.crew]
-    rules = replace(mission.rules, travel="euclidean", capacity_reserve=0.0, return_to_start=False)
+    travel = "euclidean" if mission.driven_lanes is None else "lanes"
+    rules = replace(mission.rules, travel=travel, capacity_reserve=0.0, return_to_start=False)
     scores = mission.suitability
     return mission.at_once(
         rules=rules,

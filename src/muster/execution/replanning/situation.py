@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
-from dataclasses import replace
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
 
 from muster.execution.replanning.relations import as_bound, binding_of
 from muster.execution.replanning.remaining_problem import RemainingMission, RobotSnapshot
 from muster.execution.replanning.transports import deliveries_aboard, load_after_work, on_board, transports
 from muster.execution.replanning.travel import Spot
+from muster.execution.replanning.worthwhile import NEARLY_THERE_S, Heading
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.station_calls import with_calls
 from muster.execution.stations.slots import AT_STATION, Stations
@@ -23,6 +24,14 @@ from muster.model.measured_energy import EnergyLeft
 from muster.model.under_way import UnderWay
 from muster.state.goods_ledger import GoodsLedger
 from muster.state.task_ledger import Ledger
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some robots, with all tasks of their routes and some tasks that no robot has."""
+
+    robots: Collection[str]
+    tasks: Collection[str]
 
 
 def required_routes(mission: Mission, plan: Plan) -> dict[str, tuple[RouteStop, ...]]:
@@ -63,14 +72,17 @@ def remaining_mission_of(
     goods: GoodsLedger,
     *,
     on_duty: bool = False,
+    part: Part | None = None,
 ) -> RemainingMission:
-    """What is left of the mission."""
-    present = [state for state in crew.values() if not state.out]
+    """What is left of the mission, or of a part of it."""
+    present = [state for state in crew.values() if not state.out and (part is None or state.robot.id in part.robots)]
     at_work = {state.route[0]: now + state.work_left_s(now) for state in present if state.activity is Activity.WORKING}
     under_way, ends_s = at_work.keys(), {**ledger.ends_s, **at_work}
-    left = [task for task in ledger.open if task.id not in under_way]
+    open_tasks = ledger.open if part is None else [ledger.tasks[name] for name in part.tasks]
+    left = [task for task in open_tasks if task.id not in under_way]
     robots = {robot.id: robot for robot in mission.robots}  # also those that have an executor of their own
     robots |= {name: state.robot for name, state in crew.items()}
+    here = crew.values() if part is None else present  # those that are out had tasks, too
     bindings = {task.id: binding_of(task.id, ledger, under_way, robots) for task in left}
     carried = on_board(crew, ledger, goods)
     transported, nowhere = transports(left, carried, ledger)
@@ -87,7 +99,7 @@ def remaining_mission_of(
         delays_s=ledger.delays_s,
         refusals=ledger.refusals,
         routes={state.robot.id: [name for name in state.route if name not in under_way] for state in present},
-        former={name: ", ".join(robots) for name, robots in _former(crew, under_way).items()},
+        former={name: ", ".join(robots) for name, robots in _former(here, under_way).items()},
         bindings=bindings,
         expired={**ledger.barred, **nowhere},
         stations=stations.working,
@@ -97,10 +109,10 @@ def remaining_mission_of(
     )
 
 
-def _former(crew: Mapping[str, RobotState], under_way: Collection[str]) -> dict[str, list[str]]:
+def _former(crew: Iterable[RobotState], under_way: Collection[str]) -> dict[str, list[str]]:
     """For each task of a route the robots that were to do it."""
     former: dict[str, list[str]] = {}
-    for state in crew.values():
+    for state in crew:
         for name in state.route:
             if name not in under_way:
                 former.setdefault(name, []).append(state.robot.id)
@@ -134,7 +146,16 @@ def _snapshot(
         load=load,
         done=done,
         left_s=state.known.left_s,
+        heading=_heading(state),
     )
+
+
+def _heading(state: RobotState) -> Heading | None:
+    """The task that a robot is on the way to, or waits at."""
+    waits = state.activity is Activity.WAITING
+    if not state.route or not (waits or state.activity is Activity.DRIVING):
+        return None
+    return Heading(state.route[0], waits or state.travel_left_s <= NEARLY_THERE_S)
 
 
 def _held(state: RobotState, now: float, stations: Stations) -> Held | None:

@@ -17,7 +17,7 @@ from muster.model.problem import Problem
 from muster.motion.map_world import body_of
 from muster.motion.path import NoPath
 from muster.motion.paths.robot_paths import RobotPaths
-from muster.motion.port import Place
+from muster.motion.port import Place, Waypoint
 
 _OUT_M, _STEP_M, _DIRECTIONS = 3.0, 0.25, 16
 """How far out of a door a place is sought, in which steps and how many directions."""
@@ -53,6 +53,10 @@ class Travel(Protocol):
         """From now on these doors are closed, and the others open; what is measured follows where it knows doors."""
         ...
 
+    def stands(self, robot: Robot, at: Place) -> bool:
+        """Whether a robot may stand at a place, as far as walls and closed areas go."""
+        ...
+
     def way_out(self, robot: Robot, at: Place, goal: Place | None) -> Place | None:
         """Where a robot is to go first that stands in a door: out on its way to a goal; None where it stands free."""
         ...
@@ -78,33 +82,40 @@ def travel_of(mission: Mission, robot_paths: RobotPaths | None = None) -> Travel
     MissionError, MissingExtraError
         as `RobotPaths.of`.
     """
-    if mission.has_ways_by_map:
-        return OverMap(RobotPaths.of(mission) if robot_paths is None else robot_paths)
+    if mission.has_paths:
+        return OverMap(RobotPaths.of(mission) if robot_paths is None else robot_paths, mission)
     return ByTable(mission.travel_tables) if mission.travel_rule == "matrix" else Straight()
 
 
 def way_of(mission: Mission, robot_paths: RobotPaths | None = None) -> Way:
-    """The ways that robots go: the shortest over the mission's map, which `robot_paths` may hold already, or straight.
+    """The ways that robots go: straight, over the mission's map or along its lanes, as `robot_paths` may have them.
 
     Raises
     ------
     MissionError, MissingExtraError
         as `RobotPaths.of`.
     """
-    if not mission.has_ways_by_map:
+    if not mission.has_paths:
         return straight
     over = RobotPaths.of(mission) if robot_paths is None else robot_paths
 
-    def shortest(robot: Robot, start: Place, goal: Place) -> Sequence[Place] | None:
-        d = mission.dimensions
-        found = over.path(body_of(robot), start[:d], goal[:d])
-        return None if isinstance(found, NoPath) else [place(point) for point in found.points[1:].tolist()] or [goal]
+    def quickest(robot: Robot, start: Place, goal: Place, *, at_work: bool = False) -> Sequence[Waypoint] | None:
+        d, body = mission.dimensions, body_of(robot, mission)
+        found = over.driven(body.off_lanes if at_work else body, start[:d], goal[:d])
+        if isinstance(found, NoPath):
+            return None
+        path, speeds = found
+        points = zip(path.points[1:].tolist(), speeds, strict=True)
+        return [Waypoint(place(point), speed_mps=speed) for point, speed in points] or [Waypoint(goal)]
 
-    return shortest
+    return quickest
 
 
 class Straight:
     """Travel without obstacles."""
+
+    def stands(self, robot: Robot, at: Place) -> bool:
+        return True
 
     def knows(self, name: str) -> bool:
         return True
@@ -121,9 +132,13 @@ class Straight:
 
 @dataclass(frozen=True, eq=False)
 class OverMap:
-    """Shortest paths over a map. A robot that stands where it cannot goes by way of its refuge."""
+    """Paths over a map or along lanes. A robot that stands where it cannot goes by way of its refuge."""
 
     robot_paths: RobotPaths
+    mission: Mission | None = None
+
+    def stands(self, robot: Robot, at: Place) -> bool:
+        return self.robot_paths.stands(body_of(robot), at)
 
     def knows(self, name: str) -> bool:
         return True
@@ -132,7 +147,7 @@ class OverMap:
         self.robot_paths.close(closed)
 
     def way_out(self, robot: Robot, at: Place, goal: Place | None) -> Place | None:
-        body, d = body_of(robot), self.robot_paths.world.dimensions
+        body, d = body_of(robot, self.mission), self.robot_paths.world.dimensions
         if self.robot_paths.stands(body, at):
             return None
         doors_open = RobotPaths(self.robot_paths.world.with_closed(()))
@@ -151,16 +166,21 @@ class OverMap:
         here = {problem.task_index[name]: spot for name, spot in past.items()}
         here |= {problem.start(i): robots[robot.id] for i, robot in enumerate(problem.robots)}
         for k, metres in enumerate(found.table):
-            body = over.bodies[k]
+            body, seconds = over.bodies[k], found.seconds[k] if len(found.seconds) else None
             cut_off = [p for p in here if not np.isfinite(np.delete(metres[p], p)).any()]
             lost = [p for p in cut_off if not self.robot_paths.stands(body, here[p].point)]
             if lost:
                 refuges = np.array([here[p].refuge for p in lost])
                 apart = np.linalg.norm(over.exits[k, lost] - refuges, axis=1)
-                metres[lost] = apart[:, None] + over.lengths(k, refuges, 1)
+                onward_m, onward_s = over.lengths(k, refuges, 1)
+                metres[lost] = apart[:, None] + onward_m
+                if seconds is not None:
+                    seconds[lost] = apart[:, None] / over.times[k].speed_mps + onward_s
             for name, spot in past.items():  # a robot is where its past is, wherever that may be
                 for i in (i for i, robot in enumerate(problem.robots) if robots[robot.id] is spot):
                     metres[problem.start(i), problem.task_index[name]] = 0.0
+                    if seconds is not None:
+                        seconds[problem.start(i), problem.task_index[name]] = 0.0
         return found
 
 
@@ -177,6 +197,9 @@ class ByTable:
     """Travel tables, which know the places of robots and tasks alone: a robot is at the place it goes to next."""
 
     tables: Mapping[str, TravelTable]
+
+    def stands(self, robot: Robot, at: Place) -> bool:
+        return True
 
     def knows(self, name: str) -> bool:
         return all(name in table.places for table in self.tables.values())

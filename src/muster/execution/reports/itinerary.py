@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import accumulate, pairwise
 
 from muster.execution.replanning.travel import way_of
-from muster.execution.robots.task_motion import Way, Work, place, work_of
+from muster.execution.robots.task_motion import Way, Work, place, places_of, work_of
 from muster.mission.errors import Finding, PlanError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.actions import plan as doing
@@ -131,9 +131,10 @@ def _itinerary(mission: Mission, robot: Robot, figures: RouteFigures, tasks: dic
 
 def _travel(mission: Mission, robot: Robot, here: Passage, goal: Place, arrives_s: float, way: Way) -> list[Passage]:
     """The passages from one place to another, the goal included, at an even speed."""
-    places = way(robot, here.place, goal)
-    if places is None:
+    found = way(robot, here.place, goal)
+    if found is None:
         raise _no_way(mission, f"robot {robot.id}: no way from {_told(here.place)} to {_told(goal)}")
+    places = places_of(found)
     lengths = list(accumulate(math.dist(*leg) for leg in pairwise([here.place, *places])))
     shares = [length / lengths[-1] if lengths[-1] else 1.0 for length in lengths]
     times = [here.leaves_s + share * (arrives_s - here.leaves_s) for share in shares[:-1]] + [arrives_s]

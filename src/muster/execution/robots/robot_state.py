@@ -7,18 +7,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Container, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from itertools import takewhile
 
 from muster.execution.robots.robot_energy import RobotEnergy
 from muster.execution.robots.station_calls import Call, next_call, without_tasks
-from muster.execution.robots.task_motion import Work, path_length, place
+from muster.execution.robots.task_motion import Work, along, path_length, place, travel_s
 from muster.mission.model import Robot
 from muster.model.robot_limits import NO_LIMITS, RobotLimits
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
-from muster.state.robot_events import RobotFails
+from muster.state.robot_events import RobotFails, RobotRemoved
 from muster.state.robots import KnownRobot
 
 _ROUNDING_S = 1e-6
@@ -201,7 +201,7 @@ class RobotState:
             self.energy.recall(*left)
         self.at_home = self.at_home and not self.done
         said = self.port.telemetry()
-        if self.out and self.out != RobotFails.kind and said is not None:
+        if self.out and self.out not in (RobotFails.kind, RobotRemoved.kind) and said is not None:
             self.out_at = said.position
 
     def hear(self, now: float) -> Telemetry | None:
@@ -233,22 +233,22 @@ class RobotState:
         """The place of the next way point of its order that does not only mark a way. There must be one."""
         return self._waypoints[self.passed + self._marks_next].position
 
-    def turn_off(self, now: float, way: Sequence[Place], broken: str) -> None:
-        """Order it to go another way round a robot, (n,) places, to its next stop, and then what is left to do."""
+    def turn_off(self, now: float, way: Sequence[Waypoint], broken: str) -> None:
+        """Order it to go another way round a robot to its next stop, and then what is left to do."""
         went_round, done = self.went_round | {broken}, self.passed + self._marks_next
         stop = self._waypoints[done]
-        marks = [Waypoint(point, label=stop.label, via=True) for point in way[:-1]]
+        marks = along(way, stop.label)[:-1]
         self.to_task += len(marks) - done
         self._order_instead(now, [*marks, *self._waypoints[done:]])
         self.went_round = went_round
 
-    def go_other_ways(self, now: float, ways: Sequence[Sequence[Place]]) -> None:
+    def go_other_ways(self, now: float, ways: Sequence[Sequence[Waypoint]]) -> None:
         """Order it to pass what is left of its stops by other ways, one to each, the stop included."""
         stops = self.stops_left
         entry = self._waypoints[self.to_task - 1] if self.passed < self.to_task else None
         waypoints: list[Waypoint] = []
         for stop, way in zip(stops, ways, strict=True):
-            waypoints += [*(Waypoint(point, label=stop.label, via=True) for point in way[:-1]), stop]
+            waypoints += [*along(way, stop.label)[:-1], replace(stop, speed_mps=way[-1].speed_mps)]
             if stop is entry:
                 self.to_task = len(waypoints)
         self._order_instead(now, waypoints)
@@ -377,6 +377,9 @@ class RobotState:
     def travel_left_s(self) -> float:
         """Seconds to the entry of the current task, for a robot under way."""
         metres = self.travel_left_m
+        if self.times.along_lanes:
+            left = self._waypoints[self.passed : max(self.passed, self.to_task)]
+            return self.times.under_way(travel_s(self.times, self.position, left), metres)
         if self.work is None:
             return self.times.rest_seconds(metres)
         here, entry = self.position, self.work.entry

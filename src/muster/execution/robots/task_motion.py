@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Protocol
 
 from muster.mission.model import Point, Robot, Task
 from muster.motion.actions import Impossible, TaskMotion, duration_of
@@ -16,8 +17,16 @@ from muster.motion.port import Place, Waypoint
 MotionPlanner = Callable[[Task, Robot], TaskMotion | Impossible]
 """What a task makes a robot do, or why the robot cannot do it."""
 
-Way = Callable[[Robot, Place, Place], Sequence[Place] | None]
-"""The places that a robot passes from one place to another, the last included; None where there is no way."""
+
+class Way(Protocol):
+    """The ways that robots go."""
+
+    def __call__(self, robot: Robot, start: Place, goal: Place, *, at_work: bool = False) -> Sequence[Waypoint] | None:
+        """Return what a robot passes from one place to another, the last included; None where there is no way.
+
+        At work robots keep to no lanes.
+        """
+        ...
 
 
 @dataclass(frozen=True)
@@ -71,15 +80,18 @@ def work_of(task: Task, robot: Robot, plan_motion: MotionPlanner, way: Way, time
     found = plan_motion(task, robot)
     if isinstance(found, Impossible):
         return found
-    waypoints, metres = [found.waypoints[0]], list[float]()
+    waypoints, metres, travelled_s = [found.waypoints[0]], list[float](), 0.0
     for before, waypoint in pairwise(found.waypoints):
-        places = way(robot, before.position, waypoint.position)
-        if places is None:
+        there = way(robot, before.position, waypoint.position, at_work=not found.is_travel)
+        if there is None:
             return Impossible(f"unreachable: there is no way from {_told(before)} to {_told(waypoint)}")
-        passed = [*(Waypoint(point, via=True) for point in places[:-1]), waypoint]
+        passed = [*along(there)[:-1], replace(waypoint, speed_mps=there[-1].speed_mps)]
         metres.append(path_length(before.position, passed))
+        travelled_s += travel_s(times, before.position, passed)
         waypoints += passed
-    driven_s = times.work_seconds([waypoint.position for waypoint in found.waypoints], metres)
+    driven_s = times.work_seconds(places_of(found.waypoints), metres)
+    if times.along_lanes and found.is_travel:
+        driven_s = travelled_s
     if duration_of(task) is not None or found.typed_cost is not None:
         straight_s = path_length(found.waypoints[0].position, found.waypoints) / robot.speed_mps
         waypoints = list(_staying_less(waypoints, max(0.0, driven_s - straight_s)))
@@ -98,14 +110,19 @@ def _told(waypoint: Waypoint) -> str:
     return f"({', '.join(f'{c:g}' for c in waypoint.position)})"
 
 
-def straight(robot: Robot, start: Place, goal: Place) -> Sequence[Place] | None:
+def straight(robot: Robot, start: Place, goal: Place, *, at_work: bool = False) -> Sequence[Waypoint] | None:
     """The way without a map."""
-    return (goal,)
+    return (Waypoint(goal),)
 
 
-def along(way: Sequence[Place], label: str = "") -> list[Waypoint]:
+def along(way: Sequence[Waypoint], label: str = "") -> list[Waypoint]:
     """Way points along a way, all but the last of which only mark it."""
-    return [Waypoint(point, label=label, via=k + 1 < len(way)) for k, point in enumerate(way)]
+    return [replace(point, label=label, via=k + 1 < len(way)) for k, point in enumerate(way)]
+
+
+def places_of(way: Sequence[Waypoint]) -> list[Place]:
+    """Return the places of way points."""
+    return [waypoint.position for waypoint in way]
 
 
 def place(point: Point) -> Place:
@@ -118,6 +135,8 @@ def travel_s(times: LegTimes, start: Place, waypoints: Sequence[Waypoint]) -> fl
     if not waypoints:
         return 0.0
     end = waypoints[-1].position
+    if times.along_lanes:
+        return times.way_seconds([start, *places_of(waypoints)], [waypoint.speed_mps for waypoint in waypoints])
     return float(times.seconds(path_length(start, waypoints), abs(end[2] - start[2]), math.dist(start, end)))
 
 

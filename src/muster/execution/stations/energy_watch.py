@@ -12,7 +12,7 @@ from muster.execution.robots.station_calls import Call
 from muster.execution.robots.task_motion import along, path_length, place, travel_s
 from muster.execution.stations.slots import Stations
 from muster.mission.model import Station
-from muster.motion.port import Place
+from muster.motion.port import Place, Waypoint
 from muster.state.station_events import EnergyLow
 from muster.state.task_ledger import Ledger
 
@@ -45,7 +45,7 @@ class EnergyWatch:
     stations: Stations
     crew: Mapping[str, RobotState]
     ledger: Ledger
-    way: Callable[[RobotState, Place], Sequence[Place] | None]
+    way: Callable[[RobotState, Place], Sequence[Waypoint] | None]
     ahead: Callable[[], Mapping[str, Mapping[str, float]]]
     ask: Tell
     on_duty: Callable[[], bool] = lambda: False

@@ -47,7 +47,7 @@ class StationService:
     stations: Stations
     ledger: Ledger
     goods: GoodsLedger
-    way: Callable[[RobotState, Place], Sequence[Place] | None]
+    way: Callable[[RobotState, Place], Sequence[Waypoint] | None]
     emit: Tell
     ask: Tell
 

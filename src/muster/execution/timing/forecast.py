@@ -10,7 +10,7 @@ from muster.execution.robots.task_motion import MotionPlanner, Way, Work, travel
 from muster.mission.system.clock import TIME_ROUNDING_S
 from muster.model.schedule import Course, Schedule
 from muster.motion.actions import Impossible
-from muster.motion.port import Place, Waypoint
+from muster.motion.port import Place
 from muster.state.task_ledger import Ledger
 
 _MARGIN = 0.1  # share of the time until a dependant's robot arrives, by which that may be late; and of a longest duty
@@ -83,7 +83,7 @@ class Forecast:
         key = (state.robot.id, start, work.entry)
         if key not in self._legs_s:
             points = self.way(state.robot, start, work.entry) or ()
-            self._legs_s[key] = travel_s(state.times, start, [Waypoint(point) for point in points])
+            self._legs_s[key] = travel_s(state.times, start, points)
         return self._legs_s[key]
 
     def between_s(self, state: RobotState, first: str, last: str) -> float:
@@ -100,7 +100,7 @@ class Forecast:
         if state.home is None:
             return 0.0
         points = self.way(state.robot, start, state.home) or ()
-        return travel_s(state.times, start, [Waypoint(point) for point in points])
+        return travel_s(state.times, start, points)
 
     def _schedule(self, now: float, margin: float) -> Schedule:
         present = [state for state in self.crew.values() if not state.out]

@@ -11,7 +11,7 @@ from muster.execution.stations.slots import AT_STATION
 from muster.execution.timing.beginning import Beginning
 from muster.execution.timing.forecast import Forecast
 from muster.motion.outlook import Outlook, Visit
-from muster.state.robot_events import RobotFails, RobotSilent
+from muster.state.robot_events import RobotFails, RobotRemoved, RobotSilent
 from muster.state.task_ledger import Ledger
 
 
@@ -31,6 +31,8 @@ class Outlooks:
     def __call__(self, robot: str) -> Outlook:
         """Where a robot will go after where its last order leads."""
         state = self.crew[robot]
+        if state.out == RobotRemoved.kind:
+            return Outlook(gone=True, removed=True)
         if state.out in (RobotFails.kind, RobotSilent.kind):
             return Outlook(gone=True)
         at_home = state.home is not None and state.at_home and not state.route

@@ -104,6 +104,8 @@ def _dimensions(mission: MissionData) -> Iterator[Fault]:
 def _travel(mission: MissionData) -> Iterator[Fault]:
     if mission.travel_rule == "map" and mission.map is None:
         yield Fault(("rules", "travel"), shown("map"), "a mission with a map, or another rule")
+    if mission.travel_rule == "lanes" and mission.lanes is None:
+        yield Fault(("rules", "travel"), shown("lanes"), "a mission with lanes, or another rule")
     if mission.travel_rule != "matrix":
         if mission.travel is not None:
             yield Fault(("travel",), "tables that are not used", "rules.travel: matrix beside them")
@@ -190,6 +192,8 @@ def _events(mission: MissionData) -> Iterator[Fault]:
             (("robot_fails",), event.robot_fails, robots, "robot"),
             (("robot_silent",), event.robot_silent, robots, "robot"),
             (("robot_returns",), event.robot_returns, robots, "robot"),
+            (("robot_removed",), event.robot_removed, robots, "robot"),
+            (("robot_moved", "robot"), event.robot_moved.robot if event.robot_moved else None, robots, "robot"),
             (("cancel_task",), event.cancel_task, tasks, "task"),
             (("move_task", "task"), event.move_task.task if event.move_task else None, tasks, "task"),
             (("delay_task", "task"), event.delay_task.task if event.delay_task else None, tasks, "task"),

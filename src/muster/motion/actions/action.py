@@ -31,11 +31,14 @@ class TaskMotion:
         2 or 3: how many coordinates the mission's positions have.
     typed_cost
         what the mission says that the task costs; None where the way points tell.
+    is_travel
+        whether the robot travels between its way points as between tasks, along lanes where it keeps to them.
     """
 
     waypoints: tuple[Waypoint, ...]
     dimensions: int
     typed_cost: float | None = None
+    is_travel: bool = False
 
     @property
     def points(self) -> tuple[Point, ...]:
@@ -134,7 +137,7 @@ def staying(task: Task, robot: Robot) -> TaskMotion:
     rest = _rest_s(task, robot, _length(points))
     stays = len(points) - 1 if task.exit is None else 0
     waypoints = [Waypoint(_place(point), hold_s=rest if k == stays else 0.0) for k, point in enumerate(points)]
-    return TaskMotion(tuple(waypoints), len(task.position), typed_cost=task.actuation_cost)
+    return TaskMotion(tuple(waypoints), len(task.position), typed_cost=task.actuation_cost, is_travel=True)
 
 
 def given(task: Task, *keys: str) -> tuple[Any, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from muster.mission.action_keys import DELIVERY, ActionKeys
 from muster.mission.model import Robot, Task
@@ -19,4 +19,4 @@ class Delivery:
     def plan(self, task: Task, robot: Robot) -> TaskMotion:
         assert task.action is not None
         assert task.action.pickup is not None
-        return along(task, robot, [task.action.pickup, task.position])
+        return replace(along(task, robot, [task.action.pickup, task.position]), is_travel=True)

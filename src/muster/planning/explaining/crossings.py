@@ -42,9 +42,9 @@ def blocked_ways(problem: Problem) -> tuple[BlockedWay, ...]:
     roadmap that is too large for that, nor of three robots or more.
     """
     mission = problem.mission
-    if not any(map(drives, mission.robots)) or (mission.map is None and mission.lanes is None):
+    if not any(map(drives, mission.robots)) or (mission.map is None and mission.driven_lanes is None):
         return ()
-    world = problem.robot_paths.world if mission.travel_rule == "map" else None
+    world = problem.robot_paths.world if mission.travel_off_lanes == "map" else None
     return tuple(_Search(problem, MissionRoadmap.of(mission, world)).found())
 
 
@@ -78,7 +78,7 @@ class _Search:
         ends = self._end(self.robots[robot]) is not None
         where = f"to task {task.id}{' and to the end of its route' if ends else ''}"
         legs = zip([self.crossings.starts[robot], *goals], goals, strict=False)
-        if self.problem.mission.lanes and not all(self.crossings.reaches(*leg) for leg in legs):
+        if self.problem.mission.driven_lanes and not all(self.crossings.reaches(*leg) for leg in legs):
             return BlockedWay((name,), task.id, f"no lanes lead {name} {where}")
         swap = self.crossings.blocking(robot, goals)
         return None if swap is None else self._told(swap, task, f"{name} cannot get {where}")

@@ -138,7 +138,7 @@ def _gets_to(problem: Problem, i: int, place: int) -> bool:
 
 def _why(problem: Problem, station: Station) -> str:
     """What is in the way of every body at the station itself; else that there is no way to it."""
-    if problem.mission.travel_rule == "map":
+    if problem.mission.travel_off_lanes == "map":
         world, point = problem.robot_paths.world, station.position
         reasons = [
             why_blocked(world, point, body)

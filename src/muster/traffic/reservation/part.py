@@ -14,6 +14,9 @@ from muster.motion.port import planar
 from muster.traffic.journeys.travellers import Point
 from muster.traffic.reservation.managed_port import ManagedPort
 
+_AWAY_M = 1e7
+"""A robot that was taken away is so far from all others, and from any other like it."""
+
 
 @dataclass
 class Part:
@@ -40,6 +43,7 @@ class Part:
     broken_s: float = 0.0  # since when
     tried: int = 0  # how often it was told anew where to go since it last moved
     orders: int = 0  # how many orders it had got when it was told last
+    removed: bool = False  # whether it was taken away
     gone: bool = False  # whether it is out, and not to be sent anywhere
     may_be_at: tuple[Point, ...] = ()  # where else it may be then
 
@@ -81,5 +85,7 @@ class Part:
 
     @property
     def near(self) -> Point:
+        if self.removed:
+            return _AWAY_M, _AWAY_M * (1 + self.number)
         said = self.port.heard
         return planar(said.position) if said is not None else self.stood

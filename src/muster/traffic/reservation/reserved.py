@@ -105,6 +105,13 @@ class ReservedTraffic:
                 part.port.halt()
                 self._forget_way(part)
 
+    def moved(self, robot: str) -> None:
+        """See `TrafficManager`. Others keep off the place where it is now."""
+        for part in self._parts:
+            if part.robot.id == robot:
+                part.port.halt()
+                self._forget_way(part)
+
     def reaches(self, robot: str, places: Sequence[Place]) -> list[bool]:
         """See `TrafficManager`."""
         for part in self._parts[: len(self._travellers)]:
@@ -149,7 +156,7 @@ class ReservedTraffic:
     def _watch(self, now: float) -> None:
         """One that does not move though it may stands in the way of the others, until it moves or is tried again."""
         for part in self._parts:
-            if part.gone != part.outlook.gone:
+            if (part.gone, part.removed) != (part.outlook.gone, part.outlook.removed):
                 self._let_out_or_in(part, now)
             moved = math.dist(part.near, part.stood) > _MOVED_M
             if moved or part.port.orders != part.orders:
@@ -172,8 +179,8 @@ class ReservedTraffic:
 
     def _let_out_or_in(self, part: Part, now: float) -> None:
         """A robot that is out was stopped, and is not sent anywhere until it takes part again."""
-        part.gone, part.broken = not part.gone, False
-        part.may_be_at = tuple(part.gone_on(now)) if part.gone else ()
+        part.gone, part.removed, part.broken = part.outlook.gone, part.outlook.removed, False
+        part.may_be_at = tuple(part.gone_on(now)) if part.gone and not part.outlook.removed else ()
         part.stood, part.moved_s = part.near, now
         self._forget_way(part)
 

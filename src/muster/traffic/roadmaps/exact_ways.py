@@ -71,12 +71,6 @@ class Network:
         narrow = np.append(self.narrow, np.ones(len(way), dtype=np.bool_))
         return Network(points, narrow, edges, clearance, self.places)
 
-    def with_way_back(self, count: int) -> Network:
-        """With the last so many edges in the other direction as well."""
-        edges = np.concatenate([self.edges, self.edges[-count:, ::-1]])
-        clearance = np.concatenate([self.clearance_m, self.clearance_m[-count:]])
-        return replace(self, edges=edges, clearance_m=clearance)
-
     def with_point(self, at: Floats) -> Network:
         return replace(self, points=np.concatenate([self.points, at[np.newaxis]]), narrow=np.append(self.narrow, True))
 
@@ -141,9 +135,7 @@ def _mended(made: Network, groups: list[Indices], finder: PathFinder, part: Any)
     return made
 
 
-def with_place(
-    made: Network, place: int, at: Floats, finder: PathFinder | None, lanes: cKDTree, *, both_ways: bool = False
-) -> Network:
+def with_place(made: Network, place: int, at: Floats, finder: PathFinder | None, lanes: cKDTree) -> Network:
     """With a point for a place, joined straight to a near one, else by the shortest path to the nearest there is.
 
     Parameters
@@ -152,8 +144,6 @@ def with_place(
         of the free space; None where all is free.
     lanes
         the first points of the network: the place is joined to one of them; one is its own where it is there.
-    both_ways
-        for a directed network: whether edges lead there and back.
     """
     if not lanes.n:
         return made
@@ -165,8 +155,7 @@ def with_place(
     if way is None:
         return made
     k, corners = way
-    there = made.with_point(at).with_place(place, len(made.points)).with_way(len(made.points), corners, candidates[k])
-    return there.with_way_back(len(corners) + 1) if both_ways else there
+    return made.with_point(at).with_place(place, len(made.points)).with_way(len(made.points), corners, candidates[k])
 
 
 def _way(at: Floats, points: Floats, finder: PathFinder | None) -> tuple[int, Floats] | None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -14,25 +15,19 @@ from muster import core
 from muster.mission.lanes import Lane, Lanes
 from muster.mission.values.arrays import Floats
 from muster.motion.free_space import GridSpace, PolygonSpace
-from muster.motion.paths import PathFinder
+from muster.motion.paths import PathFinder, lane_joints
+from muster.motion.paths.lane_joints import ON_LANE_M, ClosedLane, Joint, Joints
 from muster.motion.port import planar
-from muster.traffic.roadmaps.exact_ways import Network, with_place
-from muster.traffic.roadmaps.lane_sections import ON_LANE_M, Section, sections
+from muster.traffic.roadmaps import lane_sections
+from muster.traffic.roadmaps.exact_ways import Network
+from muster.traffic.roadmaps.lane_sections import Section, sections
 
 _WHOLE = 1e-9
 """Of a lane's length: as many robots fit as do, whatever float64 says."""
 _CLEAR = 1 + 1e-6
 """Who stops beside another lane keeps clear of it whatever float64 says."""
-_JUST_ON_M = 1e-3
-"""A place that is no farther from it is a point of the lane: all who drive there come by it."""
-
-
-@dataclass(frozen=True)
-class ClosedLane:
-    """A lane that a robot of some radius cannot drive: its number, from 0, and why."""
-
-    number: int
-    reason: str
+_SAME_M = 1e-9
+"""A place that is nearer to a node is this node."""
 
 
 class LaneNetwork(NamedTuple):
@@ -45,14 +40,7 @@ class LaneNetwork(NamedTuple):
 
 def closed_lanes(lanes: Lanes, radius_m: float, finder: PathFinder | None) -> list[ClosedLane]:
     """The lanes that robots of a radius cannot drive; without a finder there are no obstacles."""
-    found = []
-    for number, lane in enumerate(lanes.edges):
-        ends = np.array([lanes.nodes[lane.start], lanes.nodes[lane.end]])
-        if lane.width_m is not None and lane.width_m < 2 * radius_m:
-            found.append(ClosedLane(number, f"{lane.width_m:g} m wide, diameter {2 * radius_m:g} m"))
-        elif finder is not None and not finder.clear(ends):
-            found.append(ClosedLane(number, f"too near to an obstacle for radius {radius_m:g} m"))
-    return found
+    return lane_joints.closed_lanes(lanes, radius_m, None if finder is None else finder.clear)
 
 
 def limited_lanes(lanes: Lanes) -> list[core.LimitedLane]:
@@ -89,54 +77,97 @@ def lane_network(
     most_points
         on all lanes together, about: longer lanes have points further apart.
     places
-        (k, 2) metres: each that is on no lane is joined to the nearest point that it can be driven to straight.
+        (k, 2) metres: each that is on no lane is joined to the nearest point of a lane to which a straight way leads.
     space
         what is free for these robots; None where there is no map.
     """
-    from scipy.spatial import cKDTree
-
     finder = None if space is None else PathFinder(space)
     closed = {lane.number for lane in closed_lanes(lanes, radius_m, finder)}
-    numbers = {name: k for k, name in enumerate(lanes.nodes)}
-    points = [np.array(place[:2], dtype=np.float64) for place in lanes.nodes.values()]
-    edges: list[tuple[int, int]] = []
+    drivable = [number for number in range(len(lanes.edges)) if number not in closed]
+    joints = Joints.of(lanes, drivable, None if finder is None else finder.clear)
+    own = _Places.of(lanes, joints, places)
+    beside = _Beside.of(lanes, drivable, apart_m)
+    points, edges = own.points, list[tuple[int, int]]()
     parts: list[Section] = []
     clearance: list[float] = []
     speeds: list[float] = []
     spacing_m = max(apart_m, sum(_length_m(lanes, lane) for lane in lanes.edges) / most_points)
-    drivable = [lane for number, lane in enumerate(lanes.edges) if number not in closed]
-    own: dict[int, int] = {}  # of places on lanes, their points
-    for lane in drivable:
-        start, end = points[numbers[lane.start]], points[numbers[lane.end]]
-        inner: list[tuple[float, int]] = []
-        for place, share in _places_on(start, end, places):
-            if place not in own:
-                own[place] = len(points)
-                points.append(places[place])
-            inner.append((share, own[place]))
-        stretch = _Stretch.of(lanes, lane, drivable, apart_m)
+    for number, ends, (first, last) in zip(drivable, joints.ends, joints.nodes.tolist(), strict=True):
+        lane, inner = lanes.edges[number], own.inner.get(number, [])
+        stretch = _Stretch.of(lanes, lane, beside)
         for share in stretch.shares(lane.capacity, spacing_m, [share for share, _ in inner]):
             inner.append((share, len(points)))
-            points.append(start + share * (end - start))
-        stops = [numbers[lane.start], *(point for _, point in sorted(inner)), numbers[lane.end]]
+            points.append(ends[0] + share * (ends[1] - ends[0]))
+        stops = [first, *(point for _, point in sorted(inner)), last]
         if lane.capacity is not None:
             shares = [share for share, _ in sorted(inner)]
-            parts += sections(start, end, shares, lane.capacity, both_ways=lane.both_ways)
+            parts += sections(ends[0], ends[1], shares, lane.capacity, both_ways=lane.both_ways)
         ways = list(pairwise(stops)) + (list(pairwise(stops[::-1])) if lane.both_ways else [])
         edges += ways
         clearance += [_clearance(lane, radius_m, known=space is None)] * len(ways)
         speeds += [lane.speed_mps or math.inf] * len(ways)
-    none = np.full(len(places), -1, dtype=np.int64)
-    pairs = np.reshape(np.array(edges, dtype=np.int64), (-1, 2))
-    made = Network(np.array(points), np.ones(len(points), dtype=np.bool_), pairs, np.array(clearance), none)
-    nodes = cKDTree(made.points)
-    for place, at in enumerate(places):
-        if place in own:
-            made = made.with_place(place, own[place])
-            continue
-        made = with_place(made, place, at, finder, nodes, both_ways=True)
-    on_lanes, joined = np.split(made.points[made.edges], [len(edges)])
-    return LaneNetwork(made, np.append(speeds, speeds_along(joined, on_lanes, np.array(speeds))), tuple(parts))
+    stubs = [way for stub in own.stubs for way in (stub, stub[::-1])]
+    pairs = np.reshape(np.array(edges + stubs, dtype=np.int64), (-1, 2))
+    known = np.append(clearance, np.zeros(len(stubs)))
+    made = Network(
+        np.array(points), np.ones(len(points), dtype=np.bool_), pairs, known, np.array(own.numbers, dtype=np.int64)
+    )
+    return LaneNetwork(made, np.append(speeds, np.full(len(stubs), np.inf)), tuple(parts))
+
+
+@dataclass(frozen=True)
+class _Places:
+    """The points of lanes so far, nodes first, and how places are joined to them.
+
+    Parameters
+    ----------
+    inner
+        by lane the points between its ends, each with the share of its length at which it is.
+    stubs
+        between places beside lanes and where these are joined.
+    numbers
+        the point of each place; -1: it is joined to no lane.
+    """
+
+    points: list[Floats]
+    inner: dict[int, list[tuple[float, int]]]
+    stubs: list[tuple[int, int]]
+    numbers: list[int]
+
+    @classmethod
+    def of(cls, lanes: Lanes, joints: Joints, places: Floats) -> _Places:
+        nodes = [np.array(place[:2], dtype=np.float64) for place in lanes.nodes.values()]
+        made = cls(nodes, {}, [], [-1] * len(places))
+        joined = [joints.joint(place) for place in places]
+        for on_lane in (True, False):  # places on lanes are points of these, so that others are joined to them
+            for k, joint in enumerate(joined):
+                if joint is not None and (joint.node < 0 and joint.away_m <= ON_LANE_M) == on_lane:
+                    made._join(k, places[k], joint, lanes)
+        return made
+
+    def _join(self, place: int, at: Floats, joint: Joint, lanes: Lanes) -> None:
+        if joint.node >= 0 and joint.away_m < _SAME_M:
+            self.numbers[place] = joint.node
+            return
+        on_lane = joint.node < 0 and joint.away_m <= ON_LANE_M
+        joined = joint.node if joint.node >= 0 else self._point_on(at if on_lane else joint.at, joint, lanes)
+        self.numbers[place] = joined
+        if not on_lane:
+            self.numbers[place] = len(self.points)
+            self.points.append(at)
+            self.stubs.append((self.numbers[place], joined))
+
+    def _point_on(self, at: Floats, joint: Joint, lanes: Lanes) -> int:
+        """The point of lanes at which a place is joined, which may be there already."""
+        shares = [(lane, metres / _length_m(lanes, lanes.edges[lane])) for lane, metres in joint.on]
+        for lane, _ in shares:
+            for _, point in self.inner.get(lane, ()):
+                if np.linalg.norm(self.points[point] - at) <= ON_LANE_M and joint.away_m > ON_LANE_M:
+                    return point
+        for lane, share in shares:
+            self.inner.setdefault(lane, []).append((share, len(self.points)))
+        self.points.append(at)
+        return len(self.points) - 1
 
 
 def speeds_along(pieces: Floats, lanes: Floats, speeds_mps: Floats) -> Floats:
@@ -148,21 +179,42 @@ def speeds_along(pieces: Floats, lanes: Floats, speeds_mps: Floats) -> Floats:
     lines = shapely.linestrings(lanes)
     ends = np.array(shapely.points(pieces))[:, :, np.newaxis]
     away_m: Floats = shapely.distance(ends, lines).max(axis=1)
-    return np.asarray(np.where(away_m <= ON_LANE_M, speeds_mps, np.inf).min(axis=1))
+    return np.asarray(np.where(away_m <= lane_sections.ON_LANE_M, speeds_mps, np.inf).min(axis=1))
 
 
 def _length_m(lanes: Lanes, lane: Lane) -> float:
     return math.dist(lanes.nodes[lane.start][:2], lanes.nodes[lane.end][:2])
 
 
-def _places_on(start: Floats, end: Floats, places: Floats) -> list[tuple[int, float]]:
-    """The places (k, 2) between the ends of a lane, by number, and at which share of its length they are."""
-    along = end - start
-    squared = float(along @ along)
-    shares = (places - start) @ along / squared
-    off_m = np.linalg.norm(places - start - shares[:, np.newaxis] * along, axis=1)
-    between = np.flatnonzero((off_m <= _JUST_ON_M) & (shares > _WHOLE) & (shares < 1 - _WHOLE))
-    return [(int(place), float(shares[place])) for place in between]
+@dataclass(frozen=True)
+class _Beside:
+    """By node what each lane at it takes of the others there: see `taken_m`."""
+
+    lanes: Lanes
+    at_node: Mapping[str, Sequence[Lane]]
+    apart_m: float
+
+    @classmethod
+    def of(cls, lanes: Lanes, drivable: Sequence[int], apart_m: float) -> _Beside:
+        at_node = defaultdict[str, list[Lane]](list)
+        for number in drivable:
+            for node in (lanes.edges[number].start, lanes.edges[number].end):
+                at_node[node].append(lanes.edges[number])
+        return cls(lanes, at_node, apart_m)
+
+    def taken_m(self, lane: Lane, node: str) -> float:
+        """How much farther than `apart_m` from one of its nodes a lane is clear of all other lanes there."""
+        at, own = np.array(self.lanes.nodes[node][:2]), {lane.start, lane.end}
+        (far,) = own - {node}
+        along = (np.array(self.lanes.nodes[far][:2]) - at) / _length_m(self.lanes, lane)
+        taken_m = 0.0
+        for other in self.at_node[node]:
+            ends = {other.start, other.end}
+            if ends != own:
+                (beyond,) = ends - {node}
+                way = np.array(self.lanes.nodes[beyond][:2]) - at
+                taken_m = max(taken_m, _clear_from_m(along, way, self.apart_m) - self.apart_m)
+        return taken_m
 
 
 @dataclass(frozen=True)
@@ -174,10 +226,10 @@ class _Stretch:
     lane_m: float
 
     @classmethod
-    def of(cls, lanes: Lanes, lane: Lane, others: Sequence[Lane], apart_m: float) -> _Stretch:
+    def of(cls, lanes: Lanes, lane: Lane, beside: _Beside) -> _Stretch:
         """All of the lane, but for what the other lanes at its nodes take of it."""
         long_m = _length_m(lanes, lane)
-        taken = [_taken_m(lanes, lane, node, others, apart_m) for node in (lane.start, lane.end)]
+        taken = [beside.taken_m(lane, node) for node in (lane.start, lane.end)]
         return cls(taken[0], long_m - taken[1], long_m)
 
     def shares(self, capacity: int | None, apart_m: float, taken: Sequence[float]) -> list[float]:
@@ -193,21 +245,6 @@ class _Stretch:
             if shares:
                 shares.remove(min(shares, key=lambda share: abs(share - at)))
         return shares
-
-
-def _taken_m(lanes: Lanes, lane: Lane, node: str, others: Sequence[Lane], apart_m: float) -> float:
-    """How much farther than `apart_m` from one of its nodes a lane is clear of all other lanes there."""
-    at, own = np.array(lanes.nodes[node][:2]), {lane.start, lane.end}
-    (far,) = own - {node}
-    along = (np.array(lanes.nodes[far][:2]) - at) / _length_m(lanes, lane)
-    taken_m = 0.0
-    for other in others:
-        ends = {other.start, other.end}
-        if node in ends and ends != own:
-            (beyond,) = ends - {node}
-            way = np.array(lanes.nodes[beyond][:2]) - at
-            taken_m = max(taken_m, _clear_from_m(along, way, apart_m) - apart_m)
-    return taken_m
 
 
 def _clear_from_m(along: Floats, way: Floats, apart_m: float) -> float:

@@ -5,8 +5,8 @@ import { FINAL } from "./team.js";
 import { TASK_MARKS, doing } from "./words.js";
 
 export class Chosen {
-  constructor({ may, act, onCancel, onDelay, onMove, onSelect }) {
-    Object.assign(this, { may, act, onCancel, onDelay, onMove, onSelect });
+  constructor({ may, act, onCancel, onDelay, onMove, onMoveRobot, onSelect }) {
+    Object.assign(this, { may, act, onCancel, onDelay, onMove, onMoveRobot, onSelect });
     this.element = html("section", { class: "chosen", "aria-live": "polite", hidden: true });
     this.shown = "";
   }
@@ -29,17 +29,20 @@ export class Chosen {
     if (this.may && !team.over) this.element.append(html("footer", {}, ...(robot ? this.forRobot(robot) : this.forTask(task))));
   }
 
-  forRobot({ id, out }) {
+  forRobot({ id, out, place }) {
     const back = ["event", { robot_returns: id }];
     if (out) {
       return [button("Bring back", () => this.act(...back, `Bring ${id} back into the team`), {
-        class: "main", title: "It works and is heard again, from where it is",
+        class: "main", title: "It works and is heard again, from where it is; one that was taken away from where that was",
       })];
     }
     const undo = { words: `Bring ${id} back into the team`, verb: back[0], data: back[1] };
     const fail = () => this.act("event", { robot_fails: id }, `Take ${id} out`, { undo });
     const silence = () => this.act("event", { robot_silent: id }, `Let ${id} fall silent`, { undo });
+    const remove = () => this.act("event", { robot_removed: id }, `Take ${id} away`, { undo });
     return [
+      button("Move …", () => this.onMoveRobot(id, place), { title: "Somebody puts it elsewhere: then say where; it goes on from there" }),
+      button("Take away", remove, { class: "alarm", title: "Somebody takes it off the ground, with what it has on board; others do its tasks" }),
       button("Take out", fail, { class: "alarm", title: "It stops where it is; others do its tasks, unless it is brought back" }),
       button("Let it fall silent", silence, { title: "A rehearsal of a radio that breaks: it goes on with its last order, and is not heard" }),
     ];

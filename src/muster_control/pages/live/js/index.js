@@ -49,7 +49,7 @@ export class LiveView {
     });
     this.robots = new RobotTable({ onSelect: select });
     this.sites = new SiteTable();
-    this.chosen = new Chosen({ may, act, onSelect: select, onCancel: (task) => this.cancel(task), onDelay: (task) => this.delay(task), onMove: (task) => this.setMoving(task) });
+    this.chosen = new Chosen({ may, act, onSelect: select, onCancel: (task) => this.cancel(task), onDelay: (task) => this.delay(task), onMove: (task) => this.setMoving(task, (place) => this.moveTask(task, place)), onMoveRobot: (robot) => this.setMoving(robot, (place) => this.moveRobot(robot, place)) });
     this.events = new EventList({ onSelect: select });
     this.notices = new Notices({
       onUndo: ({ words, verb, data }) => act(verb, data, words), onSettled: (token, done) => this.controls.settled(token, done),
@@ -169,11 +169,19 @@ export class LiveView {
     this.showMode(on ? "Click where the new task is, or move the map by arrows and press Enter for its middle (Escape: none)" : "");
   }
 
-  setMoving(task) {
+  // Somebody has put a robot elsewhere.
+  moveRobot(robot, [x, y]) {
+    const z = this.team.robots.get(robot).place?.[2] ?? 0;
+    const position = this.team.spatial ? [x, y, z] : [x, y];
+    this.act("event", { robot_moved: { robot, position } }, `Move ${robot} to ${x.toFixed(2)}, ${y.toFixed(2)}`);
+  }
+
+  // `move`: what to do with the place that is clicked next.
+  setMoving(id, move) {
     if (this.space) this.toggleSpace();
     this.setAdding(false);
-    this.moving = task;
-    this.showMode(`Click where ${task} is to be, drag it, or press Enter for the middle of the map (Escape: leave it)`);
+    this.moving = move;
+    this.showMode(`Click where ${id} is to be, drag it, or press Enter for the middle of the map (Escape: leave it)`);
   }
 
   showMode(words) {
@@ -186,7 +194,7 @@ export class LiveView {
     const { moving } = this;
     this.setAdding(false);
     if (moving) {
-      this.moveTask(moving, place);
+      moving(place);
       return;
     }
     this.addTask(place);

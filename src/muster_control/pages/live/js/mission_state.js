@@ -101,8 +101,12 @@ export class MissionState {
     Object.assign(this.tasks.get(id) ?? {}, { begun: true, ended: true, cancelled: false, lost: false, robots });
   }
 
-  takeOut(robot, kind) {
+  breakOffWork(robot) {
     for (const task of this.tasks.values()) if (task.isAtWork && task.robots.includes(robot)) this.breakOff(task.id);
+  }
+
+  takeOut(robot, kind) {
+    this.breakOffWork(robot);
     if (this.robots.has(robot)) Object.assign(this.robots.get(robot), { out: kind, route: [] });
   }
 
@@ -222,6 +226,8 @@ const CHANGES = {
   },
   robot_fails: (state, { robot }, _, kind) => state.takeOut(robot, kind),
   robot_stuck: (state, { robot }, _, kind) => state.takeOut(robot, kind),
+  robot_removed: (state, { robot }, _, kind) => state.takeOut(robot, kind),
+  robot_moved: (state, { robot }) => state.breakOffWork(robot),
   robot_silent: (state, { robot, goes_on: goesOn = false }, _, kind) => { if (!goesOn) state.takeOut(robot, kind); },
   robot_returns(state, { robot }) {
     if (state.robots.has(robot)) state.robots.get(robot).out = "";

@@ -6,7 +6,7 @@ from tests.muster_studies.movingai_maps import map_text
 
 from muster.mission.errors import InputError
 from muster.traffic.joint_path_faults import faults
-from muster_studies.instances.movingai import Ends, read_map, read_scenario
+from muster.traffic.movingai import Ends, read_map, read_scenario
 
 MAP = "type octile\nheight 2\nwidth 4\nmap\n..@T\nGSOW\n"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -67,13 +68,37 @@ def read_scenario(path: Path) -> list[Ends]:
     ends = []
     for line, text in enumerate(lines[1:], 2):
         if not text.strip():
-            continue
+            break
         parts = text.split()
         if len(parts) != 9 or not all(part.isdigit() for part in parts[4:8]):
             raise _wrong(path, line, "", text, "bucket, map, width, height, start x and y, goal x and y, length")
         x, y, goal_x, goal_y = map(int, parts[4:8])
         ends.append(Ends((y, x), (goal_y, goal_x)))
     return ends
+
+
+def require_fitting(path: Path, ends: Sequence[Ends], blocked: Bools) -> None:
+    """Raise `InputError` where a robot of a scenario has no free cell of a map, or one that another has.
+
+    Parameters
+    ----------
+    path : Path
+        The scenario file, for the message.
+    ends : Sequence[Ends]
+        The robots of the file, from its first on.
+    blocked : Bools
+        Which cells of the map are blocked, (rows, columns).
+    """
+    for side in ("start", "goal"):
+        taken: dict[Cell, int] = {}
+        for robot, one in enumerate(ends):
+            row, column = cell = getattr(one, side)
+            line, told = robot + 2, f"x {column}, y {row}"
+            if row >= blocked.shape[0] or column >= blocked.shape[1] or blocked[cell]:
+                raise _wrong(path, line, side, told, f"a free cell of the map, {blocked.shape[1]} x {blocked.shape[0]}")
+            if cell in taken:
+                raise _wrong(path, line, side, told, f"a cell that no other robot has; line {taken[cell]} has it")
+            taken[cell] = line
 
 
 def _wrong(path: Path, line: int, field: str, value: str, expected: str) -> InputError:
