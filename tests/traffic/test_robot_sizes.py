@@ -12,7 +12,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from muster.mission.lanes import Lane, Lanes
-from muster.mission.model import Map, Mission, Robot, Task, Zone
+from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
 from muster.motion.free_space import GridSpace, PolygonSpace
 from muster.motion.grid import Grid
 from muster.motion.map_world import World
@@ -343,3 +343,14 @@ def test_the_world_of_a_mission_with_several_sizes_is_read_once(monkeypatch):
     team = tuple(robot(f"r{k}", radius, (3.0, 1.0 + 2 * k)) for k, radius in enumerate((0.2, 0.4, 0.8)))
     MissionRoadmap.of(Mission(robots=team, tasks=(), map=hall(2.0)))
     assert len(read) == 1
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_rows_along_walls_of_a_grid_repeat_no_point_of_the_layer(seed):
+    grid = clumps(seed)
+    world = World(2, 0.0, grid, None, ())
+    place = tuple(grid.to_map(np.argwhere(~inflated(grid, 0.7).blocked)[:1, ::-1] + 0.5)[0].tolist())
+    team = tuple(robot(f"r{radius}", radius, place) for radius in RADII)
+    mission = Mission(robots=team, tasks=(), map=Map(image="x.png", resolution_m=0.2), rules=Rules(travel="map"))
+    roadmap = MissionRoadmap.of(mission, world).roadmap
+    assert roadmap.lengths_m.min() > 0

@@ -152,7 +152,8 @@ class AvoChooser {
     for (const int k : found_) {
       const Vec<2> away = agents_.positions[i] - agents_.positions[k];
       const double distance = norm(away), gap = distance - agents_.radii[i] - agents_.radii[k];
-      if (distance > 0.0) bound((1.0 / distance) * away, stop.speed(std::max(0.0, gap) / 2.0));
+      if (distance > 0.0 && gap <= stop.distance(agents_.max_speeds[i]) + longest_)
+        bound((1.0 / distance) * away, stop.speed(std::max(0.0, gap) / 2.0));
     }
     keep_speed(i);
   }

@@ -46,14 +46,14 @@ void RightOfWay::look_at_robots(int i) {
   const Choice& own = choices_[i];
   const Braking braking{dt_, own.acceleration};
   const double stop = braking.distance(std::max(norm(own.wanted), norm(own.braked)));
-  tree_.near(i, {std::numeric_limits<int>::max(), own.radius + largest_radius_ + clearance_ + stop + longest_stop_},
-             found_);
+  const double beside = own.radius + clearance_ + stop + longest_stop_;
+  tree_.near(i, {std::numeric_limits<int>::max(), beside + largest_radius_}, found_);
   for (const int k : found_) {
     const Choice& other = choices_[k];
     if (other.radius == 0.0) continue;
     const Vec<3> apart = positions_[k] - positions_[i];
     const double distance = norm(apart);
-    if (distance == 0.0) continue;
+    if (distance == 0.0 || distance > beside + other.radius) continue;
     const Vec<3> towards = (1.0 / distance) * apart;
     const double braked = stopping(i, own.straight, {}, towards);
     const double gap = distance - own.radius - other.radius - clearance_;

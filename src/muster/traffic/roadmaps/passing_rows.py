@@ -90,6 +90,8 @@ def _with_rows(
     for grid in tight:
         inside |= _is_in(grid, walls)
     rows = _thinned(walls[inside], apart_m)
+    if len(rows) and len(made.points):
+        rows = rows[cKDTree(made.points).query(rows)[0] > apart_m / _DENSER]  # else the layer has a point there
     if not len(rows) or not len(made.points):
         return made
     first = len(made.points)
