@@ -65,7 +65,10 @@ ALLOWED = {
     "planning/explaining/tables.py": ("team", _SHOWN),
     "planning/loading.py": ("suitability", _API),
     "planning/mission_readers.py": ("suitability", _API),
-    "running/exploration.py": ("suitability", "a task of a frontier has a type that most robots suit"),
+    "running/exploration.py": (
+        "lock suitability",
+        "a task of a frontier is for the robots that fly, or drive, and has a type that most suit",
+    ),
     "running/true_places.py": ("team", "a team is as far off as its robot that is farthest off"),
     "running/unknown_ground.py": ("team", "the ways of all robots of a team are measured"),
     "simulation/energy.py": ("battery capacity", "the battery of a robot that has none by the mission"),

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import dataclass
-from itertools import islice
+from dataclasses import dataclass, replace
 
 from muster.execution.goods_beside import fetching_place
 from muster.execution.record import Tell
@@ -230,9 +229,10 @@ class Changes:
         there = {robot.id: robot for robot in (*self.mission.robots, *(one.robot for one in self.crew.values()))}
         beside: Iterable[Task] = self.ledger.tasks.values()
         if not robots and not any(map(tasks_named_by, tasks)):  # what names no other fits however many there are
-            beside = islice(beside, 1)
+            beside = ()
+        rules = replace(self.mission.rules, travel=None)  # lanes, which are large, are looked at once
         try:
-            self.mission.at_once(lanes=None, robots=(*there.values(), *robots), tasks=(*beside, *tasks))
+            self.mission.at_once(rules=rules, lanes=None, robots=(*there.values(), *robots), tasks=(*beside, *tasks))
         except MissionError as error:
             found = error.findings[0]
             name = [*(robot.id for robot in robots), *(task.id for task in tasks)][0]

@@ -5,7 +5,7 @@ import pytest
 from muster import Event, Mission, Robot, Task
 from muster.execution import report_of
 from muster.execution.record import NoObserver
-from muster.mission.events import DelayedTask, MovedTask
+from muster.mission.events import DelayedTask, MovedRobot, MovedTask
 from muster.mission.plan import Plan, Reason, Route, Unassigned
 from muster.mission.records import specified
 from muster.model.problem import Problem
@@ -132,6 +132,8 @@ EVENTS = {
     "robot_silent": "a",
     "robot_returns": "a",
     "robot_joins": Robot(id="c", position=(5, 5)),
+    "robot_removed": "a",
+    "robot_moved": MovedRobot(robot="a", position=(3, 3)),
     "new_task": Task(id="new", position=(1, 1)),
     "cancel_task": "t",
     "move_task": MovedTask(task="t", position=(3, 3)),
