@@ -226,6 +226,7 @@ class RobotState:
 
     def send_again(self, now: float) -> None:
         """Order what is left of the last order."""
+        self.to_task = max(0, self.to_task - self.passed)
         self._order_instead(now, self._waypoints[self.passed :])
 
     @property
@@ -245,7 +246,8 @@ class RobotState:
     def go_other_ways(self, now: float, ways: Sequence[Sequence[Waypoint]]) -> None:
         """Order it to pass what is left of its stops by other ways, one to each, the stop included."""
         stops = self.stops_left
-        entry = self._waypoints[self.to_task - 1] if self.passed < self.to_task else None
+        leads = self.passed < self.to_task <= len(self._waypoints)  # not so on its way to a station or home
+        entry = self._waypoints[self.to_task - 1] if leads else None
         waypoints: list[Waypoint] = []
         for stop, way in zip(stops, ways, strict=True):
             waypoints += [*along(way, stop.label)[:-1], replace(stop, speed_mps=way[-1].speed_mps)]
