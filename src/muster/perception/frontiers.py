@@ -189,6 +189,7 @@ def _grouped(cells: Indices, parts: Indices, count: int, least: int) -> list[Ind
 
 
 def _middle(places: Floats) -> Floats:
-    """Return the place of some that is nearest to their mean."""
-    nearest: Floats = places[np.argmin(np.linalg.norm(places - places.mean(axis=0), axis=1))]
+    """Return the place of some that is nearest to their mean; the first of those as near, but for rounding."""
+    apart_m = np.linalg.norm(places - places.mean(axis=0), axis=1)
+    nearest: Floats = places[np.argmin(np.round(apart_m, 9))]
     return nearest
