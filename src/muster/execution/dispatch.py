@@ -306,10 +306,11 @@ class Dispatch:
             return
         may_begin = self._ledger.may_begin(task) and not self._beginning.must_ask(task, state.robot)
         state.refilled_idle = False
-        state.to_task, state.works = len(there), self._peers is None and may_begin
+        state.works = self._peers is None and may_begin
         state.at_home = False
         state.usage_to_task = state.used - state.used_before + self._planned_usage(state, task)
-        state.send(now, Activity.DRIVING, [*there, *(delayed(work, delay) if state.works else ())])
+        waypoints = [*there, *(delayed(work, delay) if state.works else ())]
+        state.send(now, Activity.DRIVING, waypoints, to_task=len(there))
         self._emit(SetsOut(robot=state.robot.id, task=task, used=state.used))
 
     def _aboard_too_long(self, state: RobotState, task: str) -> str:

@@ -88,7 +88,7 @@ class RobotState:
     activity: Activity = Activity.IDLE
     telemetry: Telemetry | None = None
     work: Work | None = None  # at state
-    to_task: int = 0  # way points of the last order that lead to the task
+    to_task: int = 0  # way points of the last order that lead to its task, or to where it goes without one
     works: bool = False  # whether the order holds the work too
     delay_s: float = 0.0  # that the current work was ordered with
     at_home: bool = True
@@ -217,17 +217,19 @@ class RobotState:
             self.left = self._waypoints[self.passed - 1].position
         return said
 
-    def send(self, now: float, activity: Activity, waypoints: Sequence[Waypoint]) -> None:
-        """Order it to pass way points."""
+    def send(
+        self, now: float, activity: Activity, waypoints: Sequence[Waypoint], *, to_task: int | None = None
+    ) -> None:
+        """Order it to pass way points, of which so many lead to where it is to go: all of them, if None."""
         self._waypoints = tuple(waypoints)
+        self.to_task = len(self._waypoints) if to_task is None else to_task
         self._order = self.port.send(self._waypoints)
         self.went_round, self.makes_room = frozenset(), False
         self.begin_activity(now, activity)
 
     def send_again(self, now: float) -> None:
         """Order what is left of the last order."""
-        self.to_task = max(0, self.to_task - self.passed)
-        self._order_instead(now, self._waypoints[self.passed :])
+        self._order_instead(now, self._waypoints[self.passed :], max(0, self.to_task - self.passed))
 
     @property
     def next_stop(self) -> Place:
@@ -239,38 +241,36 @@ class RobotState:
         went_round, done = self.went_round | {broken}, self.passed + self._marks_next
         stop = self._waypoints[done]
         marks = along(way, stop.label)[:-1]
-        self.to_task += len(marks) - done
-        self._order_instead(now, [*marks, *self._waypoints[done:]])
+        self._order_instead(now, [*marks, *self._waypoints[done:]], self.to_task + len(marks) - done)
         self.went_round = went_round
 
     def go_other_ways(self, now: float, ways: Sequence[Sequence[Waypoint]]) -> None:
         """Order it to pass what is left of its stops by other ways, one to each, the stop included."""
         stops = self.stops_left
-        leads = self.passed < self.to_task <= len(self._waypoints)  # not so on its way to a station or home
-        entry = self._waypoints[self.to_task - 1] if leads else None
-        waypoints: list[Waypoint] = []
+        entry = self._waypoints[self.to_task - 1] if self.passed < self.to_task else None
+        waypoints, to_task = list[Waypoint](), 0
         for stop, way in zip(stops, ways, strict=True):
             waypoints += [*along(way, stop.label)[:-1], replace(stop, speed_mps=way[-1].speed_mps)]
             if stop is entry:
-                self.to_task = len(waypoints)
-        self._order_instead(now, waypoints)
+                to_task = len(waypoints)
+        self._order_instead(now, waypoints, to_task)
 
     @property
     def stops_left(self) -> list[Waypoint]:
         """The way points of the last order that it has not passed, without those that only mark a way."""
         return [waypoint for waypoint in self._waypoints[self.passed :] if not waypoint.via]
 
-    def _order_instead(self, now: float, waypoints: Sequence[Waypoint]) -> None:
+    def _order_instead(self, now: float, waypoints: Sequence[Waypoint], to_task: int) -> None:
         """Order it to pass other way points, with the same to do as before."""
         begun = self.begun_s
-        self.send(now, self.activity, waypoints)
+        self.send(now, self.activity, waypoints, to_task=to_task)
         self.begun_s = begun
 
     def stop(self, now: float) -> None:
         """Let it stop where it is, available. Work that is broken off counts as far as it went."""
         if self.activity is Activity.WORKING and self.work_s > 0:
             self.stayed += self._stayed_cost * min(1.0, (now - self.begun_s) / self.work_s)
-        self._waypoints = ()
+        self._waypoints, self.to_task = (), 0
         self._order = self.port.cancel()
         self.work, self.away = None, False
         self.wait_cause = self.wait_words = ""
