@@ -52,9 +52,8 @@ class RoutesValue:
 def value_of(problem: Problem, routes: Routes) -> RoutesValue:
     """Return the value of routes, which may deadlock: they are not admissible then, and have no objective."""
     inspection = core.Inspection(problem.core, routes)
-    weight = sum(problem.tasks[j].priority for j in sorted({j for route in routes for j in route}))
-    objective = inspection.objective
-    return RoutesValue(inspection.admissible and objective is not None, weight, 0.0 if objective is None else objective)
+    admissible = inspection.admissible and inspection.objective is not None
+    return RoutesValue(admissible, problem.weight(routes), inspection.objective or 0.0)
 
 
 def with_past(problem: Problem, past: Sequence[Sequence[int]]) -> Problem:

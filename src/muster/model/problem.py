@@ -383,11 +383,14 @@ class Problem(TravelAndWork):
         ParameterError
             if they deadlock, so that an objective of time has no value.
         """
-        weight = sum(self.tasks[j].priority for j in sorted({j for route in routes for j in route}))
         objective = core.Inspection(self.core, [list(route) for route in routes]).objective
         if objective is None:  # routes of a function from elsewhere
             raise ParameterError("routes: tasks wait for each other for ever; expected orders in which all can begin")
-        return weight, objective
+        return self.weight(routes), objective
+
+    def weight(self, routes: Sequence[Sequence[int]]) -> float:
+        """Weight of the tasks of routes."""
+        return sum(self.tasks[j].priority for j in sorted({j for route in routes for j in route}))
 
     def back(self, i: int, end_s: float, j: int) -> float:
         """When robot i, which ends work on its last task j at a time, is at the end of its route."""

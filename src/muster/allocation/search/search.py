@@ -137,7 +137,7 @@ def anneal(problem: Problem, stop: Stop, seed: int, params: Parameters, start: R
             best = searches.best
             if rank_of(best) != rank:
                 rank = rank_of(best)
-                stop.improved(_weight(problem, best), best.best_objective)
+                stop.improved(problem.weight(best.best), best.best_objective)
             searches.go_on(stop.share)
         return best.best
 
@@ -253,10 +253,6 @@ def _search(problem: Problem, first: Routes, seed: int, params: Parameters, over
         greatest_share=0.8 if problem.objective in ("max", "makespan") else 0.5,
         near=params.near,
     )
-
-
-def _weight(problem: Problem, search: _Search) -> float:
-    return sum(problem.tasks[j].priority for j in sorted({j for route in search.best for j in route}))
 
 
 SEARCH = Allocator(

@@ -20,7 +20,7 @@ from muster.allocation.stop import Stop
 from muster.execution.replanning.remaining_problem import RemainingMission, RemainingProblem, remaining_problem
 from muster.execution.replanning.route_ahead import RouteAhead, route_ahead, stops_of
 from muster.execution.replanning.travel import Travel
-from muster.execution.replanning.worthwhile import worthwhile
+from muster.execution.replanning.worthwhile import robots_of, worthwhile
 from muster.execution.robots.station_calls import Call
 from muster.mission.errors import ParameterError
 from muster.mission.plan import RouteStop, Unassigned, teams_of
@@ -208,11 +208,7 @@ def without_units(problem: Problem, routes: Routes, tasks: Iterable[int]) -> Rou
 
 def _robots_of(problem: Problem, routes: Routes) -> RobotsOf:
     """For each task the robots that do it; work under way is left out."""
-    robots: dict[int, set[int]] = {}
-    for i, route in enumerate(routes):
-        for j in route[len(problem.beginning(i)) :]:
-            robots.setdefault(j, set()).add(i)
-    return {j: frozenset(team) for j, team in robots.items()}
+    return robots_of([route[len(problem.beginning(i)) :] for i, route in enumerate(routes)])
 
 
 def _locked(problem: Problem, robots_of: RobotsOf, free: frozenset[int]) -> Problem:

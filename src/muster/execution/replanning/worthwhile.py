@@ -90,16 +90,17 @@ def _exchanges(problem: Problem, now: Routes, then: Routes) -> Iterator[set[int]
 
 def _moved(now: Routes, then: Routes) -> set[int]:
     """The tasks that have a robot now, and another one then."""
-    before, after = _robots_of(now), _robots_of(then)
+    before, after = robots_of(now), robots_of(then)
     return {j for j, robots in after.items() if before.get(j, robots) != robots}
 
 
-def _robots_of(routes: Sequence[Sequence[int]]) -> dict[int, set[int]]:
-    found: dict[int, set[int]] = {}
+def robots_of(routes: Sequence[Sequence[int]]) -> dict[int, frozenset[int]]:
+    """For each task of some routes, by index, the robots that do it."""
+    robots: dict[int, set[int]] = {}
     for i, route in enumerate(routes):
         for j in route:
-            found.setdefault(j, set()).add(i)
-    return found
+            robots.setdefault(j, set()).add(i)
+    return {j: frozenset(team) for j, team in robots.items()}
 
 
 def _keeps(problem: Problem, routes: Routes, near: Mapping[int, int]) -> bool:
