@@ -102,9 +102,8 @@ Vec<3> Manners::wanted(int i, const Vec<3>& course) const {
     const double beside = radius + std::max(radius, stop);
     tree_.near(i, {8, beside + largest_radius_}, near);
     // A large robot far away widens the search, and not what counts as near to others.
-    std::erase_if(near, [&](int k) {
-      return norm(robots_[k].position - robot.position) > beside + robots_[k].body.radius;
-    });
+    std::erase_if(near,
+                  [&](int k) { return norm(robots_[k].position - robot.position) > beside + robots_[k].body.radius; });
   }
   if (!robot.turned_aside && near.empty()) {
     robot.waits = false;
