@@ -220,6 +220,15 @@ class Entry:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Tick:
+    """The end of what happened at once in a run: its last entry, and where bodies are then, if the world says so."""
+
+    run: int
+    seq: int
+    bodies: Mapping[str, Any] | None
+
+
+@dataclass(frozen=True, kw_only=True)
 class Stretch:
     """The positions of robots over some time: a packed piece of a run's tracks (`runs.tracks`). `seq` counts from 1."""
 

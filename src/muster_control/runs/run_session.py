@@ -234,10 +234,13 @@ class RunSession:
 
     def _end_tick(self, bodies: Mapping[str, Any] | None) -> None:
         """Add the entries of a tick, all at once; those of a tick that a crash cuts short never were."""
-        for said, text in self._tick:
-            self._add_entry(said, text)
+        entries = [self._entry(said, text) for said, text in self._tick]
         self._tick.clear()
-        self._runner_input.bodies = self.log_writer.bodies = bodies
+        self._runner_input.bodies = bodies
+        self.log_writer.add(entries, bodies)
+        if self.log_writer.full and self._runner is not None:
+            self._failed = f"its log could not be kept: {self._trouble}"
+            self._runner.dismiss()
 
     def _take_state(self, kind: str, said: Mapping[str, Any]) -> None:
         """Take a checkpoint, or tracks."""
@@ -256,7 +259,8 @@ class RunSession:
             self._noted_at = now
             self.log_writer.set(time_s=self.run.time_s)
 
-    def _add_entry(self, said: Mapping[str, Any], text: str) -> None:
+    def _entry(self, said: Mapping[str, Any], text: str) -> Entry:
+        """Return an entry of the log that the runner said, which its input has from now on, too."""
         seq, time_s = said["seq"], said["time_s"]
         entry = Entry(
             run=self.run.id, seq=seq, time_s=time_s, kind=said["kind"], data=said["data"], at=datetime.now(UTC)
@@ -264,10 +268,7 @@ class RunSession:
         self._texts[seq] = text
         self._reported |= entry.kind == "report"
         self._runner_input.add(entry)
-        self.log_writer.add(entry)
-        if self.log_writer.full and self._runner is not None:
-            self._failed = f"its log could not be kept: {self._trouble}"
-            self._runner.dismiss()
+        return entry
 
     def _on_written(self, entries: Sequence[Entry]) -> None:
         """Publish entries that are written, or cannot be."""

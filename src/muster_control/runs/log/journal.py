@@ -1,7 +1,8 @@
 """The journal of a server: what it has accepted and the database has not, synced to a local file before it is answered.
 
-Each line is a CRC 32, a space, and an action or an entry of a run's log as JSON. Items that are appended while others
-are being synced are synced together (group commit). The file is emptied when the database has all of it.
+Each line is a CRC 32, a space, and an action, an entry of a run's log or the end of its tick, as JSON. Items that are
+appended while others are being synced are synced together (group commit). The file is emptied when the database has all
+of it.
 """
 
 from __future__ import annotations
@@ -19,14 +20,13 @@ from contextlib import suppress
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
-from typing import Any
 from zlib import crc32
 
-from muster_control.contract import Action, Entry, StoreError
+from muster_control.contract import Action, Entry, StoreError, Tick
 from muster_control.store.columns import as_json
 
-Item = Action | Entry
-_KINDS: dict[str, type[Item]] = {"action": Action, "entry": Entry}
+Item = Action | Entry | Tick
+_KINDS: dict[str, type[Item]] = {"action": Action, "entry": Entry, "tick": Tick}
 
 _PAUSE_S = 0.1
 
@@ -191,8 +191,10 @@ def _lock(file: int, until: float) -> None:
 
 
 def _line(item: Item) -> bytes:
-    kind = "action" if isinstance(item, Action) else "entry"
-    plain = asdict(item) | {"at": item.at.isoformat() if item.at else None}
+    kind = next(name for name, of in _KINDS.items() if isinstance(item, of))
+    plain = asdict(item)
+    if plain.get("at"):
+        plain["at"] = plain["at"].isoformat()
     text = as_json({kind: plain}).encode()
     return b"%08x %s\n" % (crc32(text), text)
 
@@ -203,5 +205,6 @@ def _item(line: bytes) -> Item | None:
     if checksum != b"%08x" % crc32(text):
         return None
     ((kind, plain),) = json.loads(text).items()
-    values: dict[str, Any] = {**plain, "at": datetime.fromisoformat(plain["at"]) if plain["at"] else None}
-    return _KINDS[kind](**values)
+    if plain.get("at"):
+        plain["at"] = datetime.fromisoformat(plain["at"])
+    return _KINDS[kind](**plain)

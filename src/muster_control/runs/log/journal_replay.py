@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from muster_control.contract import OVER, Action, ConflictError, Entry, NotFoundError
-from muster_control.runs.log.journal import Journal
+from muster_control.contract import OVER, Action, ConflictError, Entry, NotFoundError, Tick
+from muster_control.runs.log.journal import Item, Journal
 
 if TYPE_CHECKING:
     from muster_control.store.store import Store
@@ -41,14 +41,19 @@ def replay(journal: Journal, store: Store) -> None:
     journal.empty()
 
 
-def _replay_run(store: Store, run: int, items: Sequence[Action | Entry]) -> list[str]:
+def _replay_run(store: Store, run: int, items: Sequence[Item]) -> list[str]:
     """Write the items of a run; returns why some were left out."""
+    tick = next((item for item in reversed(items) if isinstance(item, Tick) and item.run == run), None)
     entries = [item for item in items if isinstance(item, Entry) and item.run == run]
+    if tick is not None:  # a power cut may have kept a part of the tick after it
+        entries = [entry for entry in entries if entry.seq <= tick.seq]
     actions = [item for item in items if isinstance(item, Action) and item.run == run]
     left_out: list[str] = []
     try:
         if entries:
-            store.log.append(run, entries[-1].time_s, entries)
+            known = store.log.bodies(run)
+            newer = tick is not None and (known is None or known["seq"] <= tick.seq)
+            store.log.append(run, entries[-1].time_s, entries, bodies=tick.bodies if newer and tick else None)
     except (ConflictError, NotFoundError) as error:
         left_out.append(str(error))
     try:

@@ -15,7 +15,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from muster.mission.errors import MusterError
-from muster_control.contract import Action, Checkpoint, ConflictError, Entry, Stretch
+from muster_control.contract import Action, Checkpoint, ConflictError, Entry, Stretch, Tick
 
 if TYPE_CHECKING:
     from muster_control.runs.log.journal import Journal
@@ -68,8 +68,7 @@ class LogWriter:
         self._on_trouble, self._on_lost = on_trouble, on_lost
         self._entries: list[Entry] = []
         self._stretches: list[Stretch] = []
-        self.bodies: Mapping[str, Any] | None = None
-        """Where bodies are, after an entry `seq`: written once that entry is, and with it."""
+        self._bodies: Mapping[str, Any] | None = None  # after an entry `seq`: written once that entry is, and with it
         self._fields: dict[str, Any] = {}
         self._actions: dict[int, Action] = {}
         self._checkpoint: Checkpoint | None = None
@@ -82,11 +81,12 @@ class LogWriter:
         self.trouble, self._unsaved, self._lost = "", "", False
         self._task = asyncio.create_task(self._go())
 
-    def add(self, entry: Entry) -> None:
-        """Add an entry."""
-        self._entries.append(entry)
+    def add(self, entries: Sequence[Entry], bodies: Mapping[str, Any] | None) -> None:
+        """Add the entries of a tick, and where bodies are after it."""
+        self._entries += entries
+        self._bodies = bodies
         if self.trouble:
-            self._save([entry])
+            self._save(entries)
         self._ask()
 
     def add_stretch(self, from_s: float, until_s: float, data: bytes) -> None:
@@ -188,12 +188,13 @@ class LogWriter:
             self._forget()
             return True
         entries, stretches = self._batch(), self._stretches[:_AT_ONCE]
+        bodies = self._bodies_after(entries)
         fields, actions, checkpoint = dict(self._fields), list(self._actions.values()), self._checkpoint
         whole = len(entries) == len(self._entries)
         trouble = ""
         try:
             if entries or stretches:
-                await self._append_patiently(entries, stretches)
+                await self._append_patiently(entries, stretches, bodies)
             if whole:
                 await self._write_rest(actions, checkpoint, fields)
         except ConflictError as error:  # another try would fail too
@@ -239,11 +240,18 @@ class LogWriter:
             count += 1
         return self._entries[:count]
 
-    async def _append_patiently(self, entries: Sequence[Entry], stretches: Sequence[Stretch]) -> None:
+    def _bodies_after(self, entries: Sequence[Entry]) -> Mapping[str, Any] | None:
+        """Where bodies are after entries, or after those that were given without any; None if they moved on since."""
+        last = entries[-1].seq if entries else self._given
+        return None if self._bodies is None or self._bodies["seq"] > last else self._bodies
+
+    async def _append_patiently(
+        self, entries: Sequence[Entry], stretches: Sequence[Stretch], bodies: Mapping[str, Any] | None
+    ) -> None:
         """Write the first entries and stretches, which are not dropped meanwhile."""
         del self._stretches[: len(stretches)]
         try:
-            await self._patiently(self._append, entries, stretches)
+            await self._patiently(self._append, entries, stretches, bodies)
         except BaseException:
             self._stretches[:0] = stretches
             raise
@@ -263,7 +271,8 @@ class LogWriter:
         new = [entry for entry in entries if entry.seq > self._saved]
         if new:
             self._saved = new[-1].seq
-            self._journal.append(new).add_done_callback(partial(self._on_saved, new))
+            tick = Tick(run=self._run, seq=self._saved, bodies=self._bodies_after(new))
+            self._journal.append([*new, tick]).add_done_callback(partial(self._on_saved, new))
 
     def _on_saved(self, entries: Sequence[Entry], saved: asyncio.Future[None]) -> None:
         """Give entries to subscribers; also if the journal could not be written, since the run goes on."""
@@ -299,14 +308,12 @@ class LogWriter:
         for waiting in (self._entries, self._stretches, self._actions, self._fields):
             waiting.clear()
 
-    def _append(self, entries: Sequence[Entry], stretches: Sequence[Stretch]) -> None:
+    def _append(self, entries: Sequence[Entry], stretches: Sequence[Stretch], bodies: Mapping[str, Any] | None) -> None:
         """Append in a thread. Stretches are numbered when they are written, as some may have been dropped."""
         if self._last_stretch is None:
             self._last_stretch = self._store.log.last_stretch(self._run)
         numbered = [replace(one, seq=self._last_stretch + k) for k, one in enumerate(stretches, start=1)]
         time_s = max([*(one.time_s for one in entries), *(one.until_s for one in stretches)])
-        bodies, last = self.bodies, entries[-1].seq if entries else self._given
-        bodies = None if bodies is None or bodies["seq"] > last else bodies
         self._store.log.append(self._run, time_s, entries, numbered, bodies)
         self._last_stretch += len(numbered)
 

@@ -11,7 +11,7 @@ from tests.muster_control.runs.played import PLAN, entry, play
 from tests.muster_control.runs.store import ADA, planned, settings_of
 
 import muster
-from muster_control.contract import Entry, StoreError
+from muster_control.contract import Entry, StoreError, Tick
 from muster_control.runs.log.journal import Journal
 from muster_control.runs.log.journal_replay import replay
 from muster_control.services.database_lock import journal_of
@@ -261,3 +261,23 @@ def test_what_neither_database_nor_journal_takes_is_refused_and_robots_stop_all_
     asyncio.run(asyncio.wait_for(story(), 30))
     (asked,) = store.actions.list(run)
     assert asked.outcome.startswith("refused: ") != obeyed
+
+
+def test_of_a_tick_that_a_power_cut_halved_nothing_is_replayed(path, store, run):
+    first, second, third = [Entry(run=run, seq=k, time_s=0.0, kind="sets_out", data={}) for k in (1, 2, 3)]
+    written(path, [first, second, Tick(run=run, seq=2, bodies={"seq": 2, "time_s": 0.0})], [third])
+    journal = Journal(path)
+    replay(journal, store)
+    asyncio.run(journal.close())
+    assert [entry.seq for entry in store.log.entries(run)] == [1, 2]
+    assert store.log.bodies(run) == {"seq": 2, "time_s": 0.0}
+
+
+def test_bodies_that_the_database_has_newer_are_kept(path, store, run):
+    entries = [Entry(run=run, seq=k, time_s=0.0, kind="sets_out", data={}) for k in (1, 2)]
+    store.log.append(run, 0.0, entries, (), {"seq": 2, "time_s": 0.2})
+    written(path, [entries[0], Tick(run=run, seq=1, bodies={"seq": 1, "time_s": 0.1})])
+    journal = Journal(path)
+    replay(journal, store)
+    asyncio.run(journal.close())
+    assert store.log.bodies(run) == {"seq": 2, "time_s": 0.2}

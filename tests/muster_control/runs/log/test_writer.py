@@ -8,9 +8,10 @@ import pytest
 from tests.muster_control.runs.store import planned
 
 import muster
-from muster_control.contract import StoreError
+from muster_control.contract import Entry, StoreError, Tick
 from muster_control.runs.log import writer as module
 from muster_control.runs.log.journal import Journal
+from muster_control.runs.log.journal_replay import replay
 from muster_control.runs.log.writer import LogWriter
 
 PIECE = b"x" * 100
@@ -104,3 +105,51 @@ def test_tracks_that_the_database_refused_are_written_in_order(store, run, monke
 
     assert journalled(store, run, story)
     assert kept(store, run) == [(1, 1.0), (2, 2.0), (3, 3.0)]
+
+
+def test_the_journal_has_where_bodies_are_when_the_database_has_nothing_yet(store, run, monkeypatch):
+    def refusing(*_):
+        raise StoreError("the server is gone")
+
+    monkeypatch.setattr(store.log, "append", refusing)
+    entries = [Entry(run=run, seq=k, time_s=0.0, kind="sets_out", data={}) for k in (1, 2, 3)]
+
+    async def story(log_writer):
+        log_writer.add(entries[:2], {"seq": 2, "time_s": 0.0})
+        await until(lambda: log_writer.trouble)
+        log_writer.add(entries[2:], {"seq": 3, "time_s": 0.1})
+
+    assert not journalled(store, run, story)
+    journal = Journal(store.database.file.with_name("journal"))
+    assert [one for one in journal.read() if isinstance(one, Tick)] == [
+        Tick(run=run, seq=2, bodies={"seq": 2, "time_s": 0.0}),
+        Tick(run=run, seq=3, bodies={"seq": 3, "time_s": 0.1}),
+    ]
+    monkeypatch.undo()
+    replay(journal, store)
+    assert [entry.seq for entry in store.log.entries(run)] == [1, 2, 3]
+    assert store.log.bodies(run) == {"seq": 3, "time_s": 0.1}
+
+
+def test_entries_are_written_with_where_bodies_were_after_them_though_they_move_on_meanwhile(store, run, monkeypatch):
+    writing, goes_on, append = threading.Event(), threading.Event(), store.log.append
+    seen = []
+
+    def slow(*arguments):
+        writing.set()
+        assert goes_on.wait(30)
+        result = append(*arguments)
+        seen.append(([entry.seq for entry in store.log.entries(run)], store.log.bodies(run)))
+        return result
+
+    monkeypatch.setattr(store.log, "append", slow)
+
+    async def story(log_writer):
+        log_writer.add([Entry(run=run, seq=1, time_s=0.0, kind="sets_out", data={})], {"seq": 1})
+        await until(writing.is_set)
+        log_writer.add([Entry(run=run, seq=2, time_s=0.0, kind="sets_out", data={})], {"seq": 2})
+        goes_on.set()
+        await log_writer.drained()
+
+    assert journalled(store, run, story)
+    assert seen == [([1], {"seq": 1}), ([1, 2], {"seq": 2})]
