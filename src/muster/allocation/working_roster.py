@@ -36,10 +36,11 @@ class WorkingRoster:
         return sorted(unit for unit in self.core.absent if self.core.ready(unit))
 
     def best(
-        self, unit: int, robots: Sequence[int] | None = None, *, append_only: bool = True
+        self, unit: int, robots: Sequence[int] | None = None, *, append_only: bool = True, quantised: bool = False
     ) -> core.UnitInsertion | None:
-        """The team, of these robots, and the places that cost least; None if there are none."""
-        return self.core.best_insertion(unit, append_only=append_only, robots=None if robots is None else list(robots))
+        """The team, of these robots, and the places that cost least, in quanta if asked; None if there are none."""
+        chosen = None if robots is None else list(robots)
+        return self.core.best_insertion(unit, append_only=append_only, quantised=quantised, robots=chosen)
 
     def fits(self, insertion: core.UnitInsertion) -> bool:
         """Whether the routes with a unit would be admissible."""

@@ -208,6 +208,8 @@ class Colony:
     def routes(self, plan: int) -> list[list[int]]:
         """Of the last call."""
 
+QUANTUM: float = 9.5367431640625e-07
+
 class Bidders:
     """
     The team while tasks are auctioned: routes so far, and what each robot could do with each open task. One thread at a time may use one.
@@ -375,9 +377,9 @@ class Roster:
 
     def usage(self, robot: int) -> float: ...
 
-    def best_insertion(self, unit: int, *, append_only: bool = False, robots: Sequence[int] | None = None) -> UnitInsertion | None:
+    def best_insertion(self, unit: int, *, append_only: bool = False, quantised: bool = False, robots: Sequence[int] | None = None) -> UnitInsertion | None:
         """
-        The team and the places at which a unit costs least, or None. All that it waits for must be in routes; `append_only` looks at the ends of routes alone, `robots` at these alone.
+        The team and the places at which a unit costs least, or None. All that it waits for must be in routes; `append_only` looks at the ends of routes alone, `robots` at these alone. `quantised` compares costs in quanta, as bids.
         """
 
     def insert(self, insertion: UnitInsertion) -> bool:

@@ -8,9 +8,11 @@ can be relayed.
 
 from __future__ import annotations
 
+import json
 from collections import defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
+from hashlib import blake2b
 
 from muster_team.auctions.valuation import Opening, Valuer
 from muster_team.knowledge.epoch_base import Base, agreed
@@ -244,9 +246,18 @@ class Epoch:
         self._early.clear()
         return True
 
+    def sees_other_routes(self, stage: Stage) -> bool:
+        """Whether a member at the same end has computed other routes from the same sales: its processor rounds so."""
+        return self.ended and stage == self.stage and stage.routes not in (b"", self.stage.routes)
+
     def _reach(self, number: int, *, ended: bool = False) -> None:
         assert self.base is not None
-        self.stage = Stage(self.own.epoch, self.base.digest, number, ended)
+        self.stage = Stage(self.own.epoch, self.base.digest, number, ended, self._digest_of_routes() if ended else b"")
+
+    def _digest_of_routes(self) -> bytes:
+        assert self.base is not None
+        routes = {robot: self.valuer.route(robot) for robot in self.base.routes}
+        return blake2b(json.dumps(routes, sort_keys=True).encode(), digest_size=4).digest()
 
     def _sell(self, sold: Sold) -> None:
         self.valuer.award(sold)

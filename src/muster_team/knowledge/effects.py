@@ -29,7 +29,8 @@ class Notice:
         robot's id. "renumbered": this robot has taken a higher incarnation, as the others knew a later one than its
         clock gave it. "refused": a robot has sent what is not admitted. "revoked": a robot has stated two different
         things, and is excluded for good. "dropped": the robot has lost a task that it owned, as another robot owns it
-        or it cannot be done any more. "twice": these robots have all begun or done the task.
+        or it cannot be done any more. "twice": these robots have all begun or done the task. "differs": a
+        robot computes other routes from what was sold, so that all state their own again.
     robots, task
         the robots and the task concerned; "" without a task.
     reason

@@ -6,7 +6,7 @@ the facts of a joint begin contain times, those of the mission.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 Bid = tuple[str, float]
 """A task, and what is bid for it."""
@@ -151,13 +151,15 @@ class Sold:
 class Stage:
     """The progress of a robot: its epoch, the digest of the epoch's base (empty: not known yet), rounds resolved.
 
-    `ended`: nobody bids any more.
+    `ended`: nobody bids any more. `routes`: then a digest of all routes, as the robot computes them from what was sold;
+    stages are equal whatever it is.
     """
 
     epoch: int
     base: bytes = b""
     round: int = 0
     ended: bool = False
+    routes: bytes = field(default=b"", compare=False)
 
 
 @dataclass(frozen=True, slots=True)

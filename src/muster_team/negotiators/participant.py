@@ -12,6 +12,7 @@ robot that has the lacking data sends it.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import repeat
@@ -46,6 +47,9 @@ from muster_team.negotiators.repairs import Repairs
 
 LEAP = 2**20
 """The most epochs that a robot goes on at once. So no number that arrives uses up all that there are."""
+
+RESTATED = 3
+"""How often other routes of a robot lead to a new epoch. So a liar does not keep the team busy."""
 
 
 @dataclass
@@ -98,6 +102,7 @@ class Participant:
         self._peer_progress = PeerProgress(self.robot)
         self._stalled = StalledMembers(self.members)
         self._repairs = Repairs(self.robot, self.timeouts.retry_s)
+        self._differing: defaultdict[str, set[int]] = defaultdict(set)  # the epochs in which it computed other routes
         self._looked_at = 0  # the digest of what is known for good, when it was last looked at for news
         self._restart_heard = False  # whether a robot has started restarted since this epoch was entered
         self._due_s = 0.0
@@ -157,6 +162,7 @@ class Participant:
             out.append(Outgoing(self._message(None, evidence=unknown), message.sender))
         if self._restart_heard and self._is_outdated():
             out += self._enter(self.epoch.own.epoch + 1, now)
+        self._compare_routes(message)
         self._peer_progress.hear(message, self.epoch.stage)
         if (what := self._repairs.answer(message, self.epoch, self._owned.known, now)) is not None:
             self.counts.repairs += 1
@@ -185,6 +191,16 @@ class Participant:
             self._identity.superseded = True  # a copy of this process states things too
         else:
             self.members.revoke(evidence.robot)
+            self._owned.epoch_due = True
+
+    def _compare_routes(self, message: Message) -> None:
+        """Tell of a sender that computes other routes; all state their own in another epoch, RESTATED times at most."""
+        if not self.epoch.sees_other_routes(message.stage):
+            return
+        seen, epoch = self._differing[message.sender], self.epoch.own.epoch
+        if epoch not in seen and len(seen) < RESTATED:
+            seen.add(epoch)
+            self.notices.tell("differs", [message.sender])
             self._owned.epoch_due = True
 
     def _refuse(self, sender: str, reason: str) -> None:

@@ -77,7 +77,7 @@ def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
         "sender": robot,
         "incarnation": COUNT,
         "number": COUNT,
-        "stage": record(Stage, epoch=COUNT, base=DATA, round=COUNT, ended=FLAG),
+        "stage": _stage(),
         "declarations": many(declaration),
         "bids": many(bids),
         "sales": rows(sold, 3),
@@ -93,6 +93,8 @@ def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
     }
 
 
+_WITHOUT_ROUTES = 4  # values of a stage
+
 PARTED = ("declarations", "bids", "sales", "heartbeats", "facts", "births", "evidence")
 """Fields that can be divided between several messages."""
 
@@ -102,6 +104,17 @@ def _pair(first: Form, second: Form) -> Form:
         lambda pair: (first.pack(pair[0]), second.pack(pair[1])),
         lambda pair: (first.unpack(pair[0]), second.unpack(pair[1])),
     )
+
+
+def _stage() -> Form:
+    """Progress: a digest of routes stands at its end where there is one."""
+    whole = record(Stage, epoch=COUNT, base=DATA, round=COUNT, ended=FLAG, routes=DATA)
+
+    def pack(stage: Stage) -> list[Any]:
+        plain: list[Any] = whole.pack(stage)
+        return plain if stage.routes else plain[:-1]
+
+    return Form(pack, lambda plain: whole.unpack([*plain, b""] if len(array(plain)) == _WITHOUT_ROUTES else plain))
 
 
 def _proved(form: Form) -> Form:

@@ -10,7 +10,7 @@ import numpy as np
 from muster import core
 from muster.allocation.allocator import Routes
 from muster.allocation.auctions.auction_terms import BidTerms
-from muster.allocation.auctions.bids import BID_RULES, Penalties, Standing, weighted
+from muster.allocation.auctions.bids import BID_RULES, Penalties, Standing, in_quanta, weighted
 from muster.allocation.auctions.winners import WINNER_RULES, Indices, KeptLowest, Lowest, Sale, WinnerRule
 from muster.allocation.stop import Stop
 from muster.mission.values.arrays import Floats
@@ -141,4 +141,4 @@ class Auctioneer:
         return Standing(self._usages[robots], self._lengths[robots], self._greatest_usage)
 
     def _weighted(self, bids: Floats, robots: int | slice, tasks: int | slice | Indices) -> Floats:
-        return weighted(bids, self._penalties.of(self._usages[robots], robots, tasks))
+        return in_quanta(weighted(bids, self._penalties.of(self._usages[robots], robots, tasks)))

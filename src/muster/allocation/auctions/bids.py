@@ -16,6 +16,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from muster import core
 from muster.allocation.auctions.auction_terms import BidTerms
 from muster.mission.values.arrays import Floats, Indices
 from muster.model.problem import Problem
@@ -92,6 +93,15 @@ BID_RULES: Mapping[str, BidRule] = MappingProxyType(
 def weighted(bid: Floats, penalty: Floats | float) -> Floats:
     """A bid made worse by a factor of 1 + penalty."""
     return np.where(bid < 0.0, bid / (1.0 + penalty), bid * (1.0 + penalty))
+
+
+def in_quanta(bid: Floats) -> Floats:
+    """A bid as it is compared: in whole quanta, so that robots whose processors round otherwise compare the same.
+
+    Bids that differ by less, in the unit of the objective, are equal, and the tie order decides.
+    """
+    rounded: Floats = np.round(bid / core.QUANTUM) * core.QUANTUM
+    return rounded
 
 
 def lack_penalty(score: Floats) -> Floats:

@@ -20,7 +20,7 @@ import numpy as np
 
 from muster import core
 from muster.allocation.auctions.auction_terms import Terms
-from muster.allocation.auctions.bids import Penalties
+from muster.allocation.auctions.bids import Penalties, in_quanta, weighted
 from muster.allocation.auctions.latest_ends import LatestEnds
 from muster.allocation.stop import Stop
 from muster.allocation.working_roster import Routes, WorkingRoster
@@ -174,7 +174,7 @@ class CoalitionAuction:
 
     def _best_of(self, unit: int, robots: Sequence[int]) -> CoalitionBid | None:
         for roster in self._rosters:
-            found = roster.best(unit, robots, append_only=self._terms.placement == "append")
+            found = roster.best(unit, robots, append_only=self._terms.placement == "append", quantised=True)
             if found is not None:
                 return CoalitionBid(found, self._price(found), roster is not self._rosters[0])
         return None
@@ -237,7 +237,7 @@ class CoalitionAuction:
         """What the objective grows by, made worse by the mean penalty of the members."""
         penalties = [self._penalties.of(np.array(self.usage(i)), i, j) for j, i, _ in insertion.members]
         penalty = float(np.mean(penalties))
-        return insertion.score / (1.0 + penalty) if insertion.score < 0.0 else insertion.score * (1.0 + penalty)
+        return float(in_quanta(weighted(np.array(insertion.score), penalty)))
 
 
 def _team(bid: CoalitionBid) -> frozenset[tuple[int, int]]:

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "plans/quantum.hpp"
+
 namespace muster {
 
 Bidders::Bidders(const Problem& problem, bool insert, Figure figure)
@@ -89,13 +91,13 @@ double Bidders::offer(int robot, int task) {
   if (!problem_.fits(robot, usage(robot) + growth)) return kNever;
   switch (figure_) {
     case Figure::growth:
-      return growth;
+      return in_quanta(growth);
     case Figure::arrivals:
-      return arrivals(robot, task);
+      return in_quanta(arrivals(robot, task));
     case Figure::end:
-      return end(robot, task);
+      return in_quanta(end(robot, task));
   }
-  return growth;
+  return in_quanta(growth);
 }
 
 const Bidders::Lowest& Bidders::lowest(int robot) {
@@ -214,7 +216,8 @@ void Bidders::consider(int robot, int task, int at) {
   const double growth = problem_.growth(robot, draft_.route(robot), task, at);
   double& least = growth_[index(robot, task)];
   int& place = place_[index(robot, task)];
-  if (growth < least || (growth == least && at < place && std::isfinite(growth))) {
+  if (in_quanta(growth) < in_quanta(least) ||
+      (in_quanta(growth) == in_quanta(least) && at < place && std::isfinite(growth))) {
     least = growth;
     place = at;
   }

@@ -10,6 +10,7 @@
 
 #include "bindings.hpp"
 #include "plans/bidders.hpp"
+#include "plans/quantum.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -84,6 +85,7 @@ class Bidding : public Bidders {
 }  // namespace
 
 void bind_bidders(nb::module_& m) {
+  m.attr("QUANTUM") = kQuantum;
   nb::class_<Bidding>(m, "Bidders",
                       "The team while tasks are auctioned: routes so far, and what each robot could do with each open "
                       "task. One thread at a time may use one.")

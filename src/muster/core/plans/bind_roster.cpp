@@ -26,11 +26,12 @@ void require_unit(const Roster& roster, int unit, bool present) {
   }
 }
 
-std::optional<UnitInsertion> best_insertion(Roster& roster, int unit, bool append_only,
+std::optional<UnitInsertion> best_insertion(Roster& roster, int unit, bool append_only, bool quantised,
                                             const std::optional<std::vector<int>>& robots) {
   require_unit(roster, unit, false);
   Trial trial;
   trial.append_only = append_only;
+  trial.quantised = quantised;
   std::vector<char> chosen;
   if (robots) {
     chosen.assign(roster.problem().robots(), 0);
@@ -80,9 +81,11 @@ void bind_roster(nb::module_& m) {
       .def_prop_ro("absent", &Roster::absent, "The units in no route.")
       .def_prop_ro("absent_weight", &Roster::absent_weight)
       .def("usage", &Roster::usage, "robot"_a)
-      .def("best_insertion", &best_insertion, "unit"_a, nb::kw_only(), "append_only"_a = false, "robots"_a = nb::none(),
+      .def("best_insertion", &best_insertion, "unit"_a, nb::kw_only(), "append_only"_a = false, "quantised"_a = false,
+           "robots"_a = nb::none(),
            "The team and the places at which a unit costs least, or None. All that it waits for must be in routes; "
-           "`append_only` looks at the ends of routes alone, `robots` at these alone.")
+           "`append_only` looks at the ends of routes alone, `robots` at these alone. `quantised` compares costs in "
+           "quanta, as bids.")
       .def(
           "insert",
           [](Roster& roster, const UnitInsertion& insertion) {

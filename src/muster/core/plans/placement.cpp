@@ -197,7 +197,7 @@ void Placement::try_place(int robot, int task, int at) {
   score.add(there, begin, work, there.growth);
   double late = 0.0;
   if (problem_.objective() == Objective::lateness) late = lateness(task, begin + work) + delays(there, begin + work);
-  const double value = score.value(begin, tail_, late);
+  const double value = compared(score.value(begin, tail_, late));
   if (value >= best_.score) return;
   if (!sees_usage) measure_usage(there, task);
   if (!problem_.fits(robot, there.usage + there.growth)) return;

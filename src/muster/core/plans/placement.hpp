@@ -8,6 +8,7 @@
 
 #include "plans/insertion_score.hpp"
 #include "plans/neighbours.hpp"
+#include "plans/quantum.hpp"
 #include "plans/relations.hpp"
 #include "plans/roster.hpp"
 #include "plans/team_choice.hpp"
@@ -120,6 +121,7 @@ class Placement {
   void try_cut(int unit);
   void try_key(int unit, int key, std::size_t first);
   double key_of(const Offer& offer, int key) const;
+  double compared(double score) const { return trial_->quantised ? in_quanta(score) : score; }
   void rank(int task, int k, int key);
   void try_teams(int unit, int key);
   void try_shared(int task, int unit);

@@ -97,6 +97,7 @@ void Placement::judge_candidates() {
       default:
         score += more;
     }
+    score = compared(score);
     if (score < best_.score) take(candidate, score, growth);
   }
   places_to_judge_.clear();

@@ -38,6 +38,7 @@ struct Trial {
   const class Neighbours* neighbours = nullptr;  // for `most_places`
   double latest_end = kNever;                    // of objective `makespan`: no place at which the mission ends later
   const std::vector<char>* robots = nullptr;     // by robot, whether it may be a member; none: all
+  bool quantised = false;                        // whether places and teams are compared in quanta
 };
 
 struct StopTimes {

@@ -233,7 +233,7 @@ void Placement::rank(int task, int k, int key) {
   for (std::size_t c = 0; c < candidates_.size(); ++c) {
     const bool out =
         offers[c].robot < 0 || busy_[candidates_[c]] || (single && !suits(relations_.awaited(k), {&candidates_[c], 1}));
-    keys_[c] = out ? kNever : key_of(offers[c], key);
+    keys_[c] = out ? kNever : compared(key_of(offers[c], key));
   }
 }
 
@@ -338,7 +338,7 @@ void Placement::judge(int unit) {
   begin = open_to_team(unit, begin);
   InsertionScore score(problem_.objective(), peak_);
   for (const Part& part : team_) score.add(*part.offer, begin, works_[part.task], growth(part));
-  const double value = score.value(begin, timeline_.tail_after(unit, works_), lateness_of_team(unit, begin));
+  const double value = compared(score.value(begin, timeline_.tail_after(unit, works_), lateness_of_team(unit, begin)));
   if (value >= best_.score || !may_begin(unit, begin)) return;
   for (const Part& part : team_) {
     const int robot = part.offer->robot;

@@ -215,7 +215,7 @@ void Placement::try_delivery_at(const Walk& walk, int at) {
   InsertionScore score(problem_.objective(), peak_);
   score.add(offer, begin, work, growth);
   const double tail = std::max(second_tail_, walk.pickup_begin + tail_ - begin);
-  const double value = score.value(begin, tail, late);
+  const double value = compared(score.value(begin, tail, late));
   if (value >= best_.score) return;
   if (const Added added[] = {{walk.at, walk.pickup}, {at, delivery}}; !keeps_length(robot, added)) return;
   const Candidate candidate{value, growth, before,  begin + std::max(tail, work + offer.onward),

@@ -189,7 +189,7 @@ void Placement::judge_whole(Whole& whole) {
     }
   }
   const double growth = total_usage(*scratch_) - total_usage(roster_);
-  const double score = scratch_->objective() - roster_.objective() + InsertionScore::kTie * growth;
+  const double score = compared(scratch_->objective() - roster_.objective() + InsertionScore::kTie * growth);
   if (score >= best_.score) return;
   static_cast<PlacedUnit&>(best_) = whole.placed.front();
   best_.others.assign(whole.placed.begin() + 1, whole.placed.end());
