@@ -74,14 +74,14 @@ class Plain:
         return len(self.carried_out(routes)) < sum(map(len, routes))
 
     def best_places(self, i, j):
-        """Where the task lengthens the route least and nothing deadlocks, but for rounding; none if it fits nowhere."""
+        """Where the task lengthens the route least and nothing deadlocks, in quanta; none if it fits nowhere."""
         if not self.problem.allowed[i, j]:
             return []
         places = range(len(self.routes[i]) + 1) if self.insert else [len(self.routes[i])]
         usages = {at: self.walk(i, self.with_task(i, j, at))[1] for at in places}
         usages = {at: usage for at, usage in usages.items() if not self.deadlocks(i, self.with_task(i, j, at))}
         least = min(usages.values(), default=math.inf)
-        return [at for at in usages if usages[at] <= least + 1e-9 and self.fits(i, self.with_task(i, j, at))]
+        return [at for at in usages if usages[at] <= least + core.QUANTUM and self.fits(i, self.with_task(i, j, at))]
 
     def growth(self, i, longer):
         return self.walk(i, longer)[1] - self.walk(i, self.routes[i])[1]
@@ -107,7 +107,7 @@ def assert_offers_are_plain(bidders, problem, figure, insert):
     for i in range(len(problem.robots)):
         for j, offer in enumerate(bidders.offers(i)):
             offers = plain.offers(figure, i, j) if j in bidders.open else [math.inf]
-            assert any(offer == pytest.approx(expected, abs=1e-9) for expected in offers)
+            assert any(offer == pytest.approx(expected, abs=core.QUANTUM) for expected in offers)
 
 
 def sold_in_random_order(problem, random, figure="growth", insert=True):
