@@ -143,13 +143,14 @@ class TrafficWaits:
                 one.held_s += now - since_s
 
     def _notice_who_is_out(self) -> None:
-        """Count waits anew: all, where a robot takes part again; those for one that goes out, as ways lead round it now.
+        """Count waits anew: for a robot that goes out, as ways lead round it from now on; all, where one returns.
 
         Whom robots wait for may not be who cut them off.
         """
         out = {robot for robot, state in self._crew.items() if state.out}
         for one in self.progress.values():
-            one.behind_s = {} if self._out - out else {k: s for k, s in one.behind_s.items() if k not in out - self._out}
+            for robot in list(one.behind_s) if self._out - out else out - self._out:
+                one.behind_s.pop(robot, None)
         self._out = out
 
     def with_waits(self, account: TrafficAccount) -> TrafficAccount:
