@@ -139,6 +139,8 @@ class Changes:
         robot.stop(now)
         robot.calls = []
         aboard = [item for item in self.state.goods.on_board.get(name, ()) if item.task is not None]
+        if why is RobotRemoved:
+            self._open_ways()
         self.ask(why(robot=name, reason=detail))
         if why is RobotFails:
             for item in aboard:
@@ -181,8 +183,9 @@ class Changes:
         at_work = robot.activity is Activity.WORKING
         broken = stop_work(self.crew, self.ledger, robot.route[0], now) if at_work else ()
         robot.stop(now)
-        robot.at_home, robot.left = False, place(moved.position)
+        robot.put(place(moved.position))
         self.on_moved(moved.robot)
+        self._open_ways()
         self.ask(RobotMoved(robot=moved.robot, position=moved.position))
         for task in broken:
             if len(self.ledger.unit(task)) > 1 or self.ledger.tasks[task].is_for_team:
@@ -361,6 +364,6 @@ def new_robot_state(
 
 def may_bring_work(event: Event, *, open_tasks: bool, cut_off: bool = False) -> bool:
     """Whether an event to come can bring work, or a robot for what is open, or one that is cut off to its end."""
-    opens = event.door_opens is not None
-    helps = event.robot_joins or event.robot_returns or event.move_task or event.station_returns or opens
-    return event.new_task is not None or bool(helps and open_tasks) or (opens and cut_off)
+    opens = event.door_opens or event.robot_returns or event.robot_removed or event.robot_moved
+    helps = opens or event.robot_joins or event.move_task or event.station_returns
+    return event.new_task is not None or bool(helps and open_tasks) or bool(opens and cut_off)
