@@ -1,5 +1,7 @@
 """Robots that somebody takes away or puts elsewhere: what becomes of their work, of others, and of places."""
 
+from dataclasses import replace
+
 import pytest
 from tests.carry_charge import battery, charger, robot, task
 from tests.carry_charge import mission as serviced
@@ -151,3 +153,19 @@ def test_one_that_was_taken_away_comes_back_only_where_there_is_room():
     simulation.report(Event(at_s=0, robot_returns="b"))
     assert not simulation.status.robots["b"].out
     assert simulation.positions["b"][:2] == (1.0, 3.0)
+
+
+def test_one_that_stood_at_a_wall_or_in_a_door_that_has_closed_comes_back_there():
+    """Robots come nearer to walls than their radius by a little, and doors close on them."""
+    open_door = Zone(id="d", open=True, polygon=HALL.zones[1].polygon)
+    robots = tuple(replace(one, position=at) for one, at in zip(IN_HALL.robots, ((1, 0.3), (9.5, 5)), strict=True))
+    mission = replace(IN_HALL, robots=robots, map=replace(HALL, zones=(HALL.zones[0], open_door)))
+    simulation = Simulation(mission, plan_of(a=["0"]))
+    simulation.world.place("a", (1.0, 0.29999))
+    simulation.advance(0.1)
+    for name in "ab":
+        simulation.report(Event(at_s=0, robot_removed=name))
+    simulation.report(Event(at_s=0, door_closes="d"))
+    for name in "ab":
+        simulation.report(Event(at_s=0, robot_returns=name))
+        assert not simulation.status.robots[name].out

@@ -21,7 +21,7 @@ from muster.mission.task_relations import tasks_named_by
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
 from muster.motion.leg_times import LegTimes
-from muster.motion.port import RobotPort
+from muster.motion.port import Place, RobotPort
 from muster.state import MissionState
 from muster.state.robot_events import RobotFails, RobotJoins, RobotMoved, RobotOut, RobotRemoved, RobotReturns
 from muster.state.robots import KnownRobot
@@ -158,18 +158,19 @@ class Changes:
 
     def require_place(self, moved: MovedRobot) -> None:
         """Raise ParameterError where nobody can put a robot: no such robot, no such place, or no room for it there."""
-        robot = self._robot_state(moved.robot)
+        robot, at = self._robot_state(moved.robot), moved.position
+        where = f"robot_moved.position: {shown(list(at))}"
         if robot.out == RobotRemoved.kind:
             raise ParameterError(f"robot_moved.robot: {shown(moved.robot)}; expected one that was not taken away")
-        self._require_room("robot_moved", robot, moved.position)
-
-    def _require_room(self, what: str, robot: RobotState, at: tuple[float, ...]) -> None:
         if len(at) != self.mission.dimensions:
-            expected = f"{self.mission.dimensions} coordinates"
-            raise ParameterError(f"{what}.position: {shown(list(at))}; expected {expected}")
-        there, radius_m = place(at), robot.robot.radius_m
-        if not self.travel.stands(robot.robot, there):
-            raise ParameterError(f"{what}.position: {shown(list(at))}; expected a place where {robot.robot.id} is free")
+            raise ParameterError(f"{where}; expected {self.mission.dimensions} coordinates")
+        if not self.travel.stands(robot.robot, place(at)):
+            raise ParameterError(f"{where}; expected a place where {robot.robot.id} is free")
+        self._require_clear("robot_moved", robot, place(at))
+
+    def _require_clear(self, what: str, robot: RobotState, there: Place) -> None:
+        """Raise ParameterError where another robot is within reach of a place."""
+        at, radius_m = there[: self.mission.dimensions], robot.robot.radius_m
         for other in self.crew.values():
             here = other is not robot and other.out != RobotRemoved.kind
             if here and math.dist(other.position, there) < radius_m + other.robot.radius_m:
@@ -192,10 +193,13 @@ class Changes:
                 self.ask(WorkBrokenOff(task=task, robot=moved.robot))
 
     def require_return(self, name: str) -> None:
-        """Raise ParameterError where a robot that was taken away cannot be put back: others are in its place."""
+        """Raise ParameterError where a robot that was taken away cannot be put back: others are in its place.
+
+        That is where it was last heard: a real robot says where it is put.
+        """
         robot = self._robot_state(name)
-        if robot.out == RobotRemoved.kind and robot.out_at is not None:
-            self._require_room("robot_returns", robot, robot.out_at[: self.mission.dimensions])
+        if robot.out == RobotRemoved.kind:
+            self._require_clear("robot_returns", robot, robot.position)
 
     def readmit(self, robot: RobotState, now: float, reason: str = "") -> None:
         """Let a robot take part again, from where it is; one that was taken away from where that was."""
