@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 
@@ -13,6 +12,7 @@ from muster.execution.robots.robot_energy import RobotEnergy
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.task_motion import Way, place, straight
 from muster.execution.robots.work_orders import stop_work
+from muster.execution.standing_room import require_clear, require_free
 from muster.execution.stations.slots import AT_STATION, Stations
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import MovedRobot
@@ -158,24 +158,15 @@ class Changes:
 
     def require_place(self, moved: MovedRobot) -> None:
         """Raise ParameterError where nobody can put a robot: no such robot, no such place, or no room for it there."""
-        robot, at = self._robot_state(moved.robot), moved.position
-        where = f"robot_moved.position: {shown(list(at))}"
+        robot = self._robot_state(moved.robot)
         if robot.out == RobotRemoved.kind:
             raise ParameterError(f"robot_moved.robot: {shown(moved.robot)}; expected one that was not taken away")
-        if len(at) != self.mission.dimensions:
-            raise ParameterError(f"{where}; expected {self.mission.dimensions} coordinates")
-        if not self.travel.stands(robot.robot, place(at)):
-            raise ParameterError(f"{where}; expected a place where {robot.robot.id} is free")
-        self._require_clear("robot_moved", robot, place(at))
+        require_free("robot_moved.position", robot.robot, moved.position, self._bodies, self.travel)
 
-    def _require_clear(self, what: str, robot: RobotState, there: Place) -> None:
-        """Raise ParameterError where another robot is within reach of a place."""
-        at, radius_m = there[: self.mission.dimensions], robot.robot.radius_m
-        for other in self.crew.values():
-            here = other is not robot and other.out != RobotRemoved.kind
-            if here and math.dist(other.position, there) < radius_m + other.robot.radius_m:
-                expected = f"a place clear of {other.robot.id}, which is at {shown(list(other.position[: len(at)]))}"
-                raise ParameterError(f"{what}.position: {shown(list(at))}; expected {expected}")
+    @property
+    def _bodies(self) -> list[tuple[Robot, Place]]:
+        """The robots that are not taken away, and where they are."""
+        return [(one.robot, one.position) for one in self.crew.values() if one.out != RobotRemoved.kind]
 
     def _put(self, moved: MovedRobot, now: float) -> None:
         """Somebody has moved a robot: it goes on from there, and work that it was at is begun again."""
@@ -199,7 +190,7 @@ class Changes:
         """
         robot = self._robot_state(name)
         if robot.out == RobotRemoved.kind:
-            self._require_clear("robot_returns", robot, robot.position)
+            require_clear("robot_returns.position", robot.robot, robot.position, self._bodies)
 
     def readmit(self, robot: RobotState, now: float, reason: str = "") -> None:
         """Let a robot take part again, from where it is; one that was taken away from where that was."""
