@@ -91,9 +91,13 @@ class PhysicsWorld(WorldBase):
             how.setdefault("arrival_m", GUSTY_ARRIVAL_M)
         super().__init__(mission, **how)
         self._wind = WindField(wind, self._seed)
-        self._count = max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
         if (snapshot := how.get("snapshot")) is not None:
             self.simulated.resume(snapshot["bodies"])
+
+    @property
+    def _count(self) -> int:
+        """Steps of physics in one of the world."""
+        return max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
 
     def snapshot(self) -> dict[str, Any]:
         """See `WorldBase`."""
