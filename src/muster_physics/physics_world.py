@@ -186,6 +186,7 @@ class PhysicsWorld(WorldBase):
         robot = self._robots[number]
         placed = self._placed(robot, np.array(place), float(self.headings[number]), 0)
         self.simulated.put(number, placed.position, float(self.headings[number]))
+        self._control.put(number)
 
     def _force_shares(self, count: int) -> Floats | None:
         """Shares of commanded force that the motors of `count` robots give in this step; None: all of it."""
