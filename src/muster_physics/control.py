@@ -207,6 +207,12 @@ class CommandFollower:
         anew = (commands.rates != 0).any(axis=1)[:, None] & self._free
         self._reference = np.where(anew, self.poses + self.lags, self._reference)
 
+    def put(self, robot: int) -> None:
+        """Take a robot that was put elsewhere as standing there; nothing changes if it is not one of these."""
+        self._motion = self.controller.group.motion()
+        is_it = self.controller.group.who == robot
+        self._reference = np.where(is_it[:, None], self._motion.poses, self._reference)
+
     def drive(self) -> None:
         """Set motors for a step of physics."""
         commands, poses = self._commands, self.poses
@@ -235,6 +241,11 @@ class Control:
         )
         used = [controller for controller in controllers if len(controller.group.who)]
         self._followers = [CommandFollower(controller, keeps_height=keeps_height) for controller in used]
+
+    def put(self, robot: int) -> None:
+        """Take a robot, by its number in the model, that was put elsewhere as standing there."""
+        for follower in self._followers:
+            follower.put(robot)
 
     def carry_out(self, commands: Commands, count: int, force_shares: Floats | None = None) -> StepResult:
         """Take `count` steps of physics; `force_shares` (n, 2) as `Controller.set_force_shares` has it; None: all 1."""

@@ -91,9 +91,13 @@ class PhysicsWorld(WorldBase):
             how.setdefault("arrival_m", GUSTY_ARRIVAL_M)
         super().__init__(mission, **how)
         self._wind = WindField(wind, self._seed)
-        self._count = max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
         if (snapshot := how.get("snapshot")) is not None:
             self.simulated.resume(snapshot["bodies"])
+
+    @property
+    def _count(self) -> int:
+        """Steps of physics in one of the world."""
+        return max(1, math.ceil(self._dt_s / PHYSICS_S - 1e-9))
 
     def snapshot(self) -> dict[str, Any]:
         """See `WorldBase`."""
@@ -182,6 +186,7 @@ class PhysicsWorld(WorldBase):
         robot = self._robots[number]
         placed = self._placed(robot, np.array(place), float(self.headings[number]), 0)
         self.simulated.put(number, placed.position, float(self.headings[number]))
+        self._control.put(number)
 
     def _force_shares(self, count: int) -> Floats | None:
         """Shares of commanded force that the motors of `count` robots give in this step; None: all of it."""

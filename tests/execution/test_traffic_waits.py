@@ -1,5 +1,6 @@
 """Who waits in traffic for whom, what that counts, and how jams end."""
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -208,6 +209,36 @@ def test_all_wait_anew_where_one_that_was_out_takes_part_again():
     out.known.out = ""
     list(waits.look(4.0))
     assert waits.progress["r_0"].behind_s["r_2"] == 0.5
+
+
+def test_waits_for_one_that_goes_out_count_anew_as_ways_lead_round_it_from_then_on():
+    waits_on, holds_up = standing("r_0", (4.3, 0), (6, 0)), standing("r_1", (5, 0))
+    _, waits = waiting_among(waits_on, holds_up, looks=8)
+    assert waits.progress["r_0"].behind_s["r_1"] > 2.0
+    holds_up.known.out = RobotStuck.kind
+    list(waits.look(4.0))
+    list(waits.look(4.5))
+    assert waits.progress["r_0"].behind_s["r_1"] == 1.0
+
+
+def test_a_task_given_up_in_a_jam_behind_one_that_is_out_is_tried_again_when_that_is_back():
+    """Traffic that steers r_0 knows a way past r_1, so that the task is not called unreachable."""
+    events = [Event(at_s=1, robot_fails="r_1"), Event(at_s=100, robot_returns="r_1")]
+    mission = line(40.0, 50.0, robots=2, events=events, only_robots=["r_0"])
+    world = World(mission)
+    executor = Executor(mission, plan_of(r_0=["0", "1"]), world.ports, limits=Limits(stuck_after_s=10))
+    holds_up = between(5, 60, "r_0", "r_1")
+
+    def each(world, executor):
+        holds_up(world, executor)
+        port = world.ports["r_0"]
+        left = port.waypoints[port.passed :]
+        port.last = replace(port.last, left_m=math.dist(port.position, left[0].position) if left else 0.0)
+
+    carry_out(executor, world, each=each, until=1000)
+    refused = [event.data for event in executor.events if event.kind == "task_refused"]
+    assert (refused[0]["task"], refused[0]["reason"]) == ("0", "jam: held up by r_1, out")
+    assert sorted(executor.crew["r_0"].done) == ["0", "1"]
 
 
 def test_a_robot_that_was_stuck_is_back_when_it_moves():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 
@@ -13,6 +12,7 @@ from muster.execution.robots.robot_energy import RobotEnergy
 from muster.execution.robots.robot_state import Activity, RobotState
 from muster.execution.robots.task_motion import Way, place, straight
 from muster.execution.robots.work_orders import stop_work
+from muster.execution.standing_room import require_clear, require_free
 from muster.execution.stations.slots import AT_STATION, Stations
 from muster.mission.errors import MissionError, ParameterError
 from muster.mission.events import MovedRobot
@@ -21,7 +21,7 @@ from muster.mission.task_relations import tasks_named_by
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
 from muster.motion.leg_times import LegTimes
-from muster.motion.port import RobotPort
+from muster.motion.port import Place, RobotPort
 from muster.state import MissionState
 from muster.state.robot_events import RobotFails, RobotJoins, RobotMoved, RobotOut, RobotRemoved, RobotReturns
 from muster.state.robots import KnownRobot
@@ -139,6 +139,8 @@ class Changes:
         robot.stop(now)
         robot.calls = []
         aboard = [item for item in self.state.goods.on_board.get(name, ()) if item.task is not None]
+        if why is RobotRemoved:
+            self._open_ways()
         self.ask(why(robot=name, reason=detail))
         if why is RobotFails:
             for item in aboard:
@@ -159,20 +161,12 @@ class Changes:
         robot = self._robot_state(moved.robot)
         if robot.out == RobotRemoved.kind:
             raise ParameterError(f"robot_moved.robot: {shown(moved.robot)}; expected one that was not taken away")
-        self._require_room("robot_moved", robot, moved.position)
+        require_free("robot_moved.position", robot.robot, moved.position, self._bodies, self.travel)
 
-    def _require_room(self, what: str, robot: RobotState, at: tuple[float, ...]) -> None:
-        if len(at) != self.mission.dimensions:
-            expected = f"{self.mission.dimensions} coordinates"
-            raise ParameterError(f"{what}.position: {shown(list(at))}; expected {expected}")
-        there, radius_m = place(at), robot.robot.radius_m
-        if not self.travel.stands(robot.robot, there):
-            raise ParameterError(f"{what}.position: {shown(list(at))}; expected a place where {robot.robot.id} is free")
-        for other in self.crew.values():
-            here = other is not robot and other.out != RobotRemoved.kind
-            if here and math.dist(other.position, there) < radius_m + other.robot.radius_m:
-                expected = f"a place clear of {other.robot.id}, which is at {shown(list(other.position[: len(at)]))}"
-                raise ParameterError(f"{what}.position: {shown(list(at))}; expected {expected}")
+    @property
+    def _bodies(self) -> list[tuple[Robot, Place]]:
+        """The robots that are not taken away, and where they are."""
+        return [(one.robot, one.position) for one in self.crew.values() if one.out != RobotRemoved.kind]
 
     def _put(self, moved: MovedRobot, now: float) -> None:
         """Somebody has moved a robot: it goes on from there, and work that it was at is begun again."""
@@ -181,18 +175,22 @@ class Changes:
         at_work = robot.activity is Activity.WORKING
         broken = stop_work(self.crew, self.ledger, robot.route[0], now) if at_work else ()
         robot.stop(now)
-        robot.at_home, robot.left = False, place(moved.position)
+        robot.put(place(moved.position))
         self.on_moved(moved.robot)
+        self._open_ways()
         self.ask(RobotMoved(robot=moved.robot, position=moved.position))
         for task in broken:
             if len(self.ledger.unit(task)) > 1 or self.ledger.tasks[task].is_for_team:
                 self.ask(WorkBrokenOff(task=task, robot=moved.robot))
 
     def require_return(self, name: str) -> None:
-        """Raise ParameterError where a robot that was taken away cannot be put back: others are in its place."""
+        """Raise ParameterError where a robot that was taken away cannot be put back: others are in its place.
+
+        That is where it was last heard: a real robot says where it is put.
+        """
         robot = self._robot_state(name)
-        if robot.out == RobotRemoved.kind and robot.out_at is not None:
-            self._require_room("robot_returns", robot, robot.out_at[: self.mission.dimensions])
+        if robot.out == RobotRemoved.kind:
+            require_clear("robot_returns.position", robot.robot, robot.position, self._bodies)
 
     def readmit(self, robot: RobotState, now: float, reason: str = "") -> None:
         """Let a robot take part again, from where it is; one that was taken away from where that was."""
@@ -361,6 +359,6 @@ def new_robot_state(
 
 def may_bring_work(event: Event, *, open_tasks: bool, cut_off: bool = False) -> bool:
     """Whether an event to come can bring work, or a robot for what is open, or one that is cut off to its end."""
-    opens = event.door_opens is not None
-    helps = event.robot_joins or event.robot_returns or event.move_task or event.station_returns or opens
-    return event.new_task is not None or bool(helps and open_tasks) or (opens and cut_off)
+    opens = event.door_opens or event.robot_returns or event.robot_removed or event.robot_moved
+    helps = opens or event.robot_joins or event.move_task or event.station_returns
+    return event.new_task is not None or bool(helps and open_tasks) or bool(opens and cut_off)

@@ -53,16 +53,24 @@ class RobotStuck(RobotOut):
 class RobotRemoved(RobotOut):
     """Somebody takes a robot away, with what it has on board: its place is free."""
 
+    def change(self, state: MissionState) -> None:
+        super().change(state)
+        state.open_ways()
+
 
 @happens("robot_moved", "{robot} is moved to {position}", mark=words.CHANGE)
 class RobotMoved(ExecutionEvent):
-    """Somebody moves a robot: coordinates in the map frame, metres. Work that it was at is broken off."""
+    """Somebody moves a robot: coordinates in the map frame, metres. Work that it was at is broken off.
+
+    Where it was it is in nobody's way any more, and from where it is there may be ways that it did not have.
+    """
 
     robot: str
     position: tuple[float, ...]
 
     def change(self, state: MissionState) -> None:
         state.break_off_work(self.robot)
+        state.open_ways()
 
 
 @happens("robot_returns", "{robot} takes part again", mark=words.CHANGE)

@@ -323,10 +323,10 @@ class Ledger:
         self.refusals.setdefault(task, {})[robot] = reason
 
     def try_again(self) -> None:
-        """Robots may try again what they had no way to."""
+        """Let robots try again what they had no way to, or did not get to for others in their way."""
         self.blocked_by.clear()
         for refusals in self.refusals.values():
-            for robot in [robot for robot, reason in refusals.items() if reason.startswith("unreachable")]:
+            for robot in [robot for robot, reason in refusals.items() if reason.startswith(("unreachable", "jam"))]:
                 del refusals[robot]
 
     def move(self, task: str, to: Point) -> None:

@@ -29,6 +29,8 @@ _ACTIVITIES = {
     "robot_fails": "out",
     "robot_silent": "out",
     "robot_stuck": "out",
+    "robot_removed": "out",
+    "robot_moved": "idle",
     "robot_returns": "idle",
     "robot_joins": "idle",
     "task_refused": "idle",
@@ -86,7 +88,8 @@ class MissionTopics:
         self._say("events", {"time_s": round(now, 3), "kind": kind, **data})
         robot = data.get("robot")
         robot = robot.get("id") if isinstance(robot, Mapping) else robot
-        if robot is not None and kind in _ACTIVITIES:
+        stays_out = kind == "robot_moved" and self._robots.get(str(robot), {}).get("activity") == "out"
+        if robot is not None and kind in _ACTIVITIES and not stays_out:
             task = {"task": str(data["task"])} if kind in ("sets_out", "arrives", "starts") and "task" in data else {}
             for name in data.get("team") or [robot]:
                 self._robots[name] = {"activity": _ACTIVITIES[kind], **task}

@@ -5,9 +5,12 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 
 from muster.execution.changes import may_bring_work
-from muster.mission.errors import MusterError
+from muster.execution.replanning.travel import Travel, travel_of
+from muster.execution.standing_room import require_clear, require_free
+from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Event, Mission
 from muster.mission.yaml_writer import plain
 from muster.motion.port import RobotPort
@@ -16,6 +19,8 @@ from muster.running.state_estimation import RobotsInWorld
 from muster.running.true_places import TruePlaces
 from muster.simulation import SimulatedWorld
 from muster.state import OtherEvent
+from muster.state.robot_events import RobotRemoved
+from muster.state.run_events import EventRefused
 from muster_team.knowledge.messages import Stage
 from muster_team.negotiators.methods import method_named
 from muster_team.processes.process_reports import SHOW, TeamSetup
@@ -179,8 +184,14 @@ class RobotBodies:
         if not self._is_possible(event):
             self._log.tell(OtherEvent(time_s=self.time_s, kind="without_effect", content=plain(event)))
             return
+        try:
+            self._require_room(event)
+        except ParameterError as error:
+            self._log.tell(EventRefused(time_s=self.time_s, event=plain(event), reason=str(error)))
+            return
         if (down := event.robot_fails or event.robot_removed) is not None:
-            self._fail(down)  # first, as its last reports precede the event
+            if down in self.team.living:
+                self._fail(down)  # first, as its last reports precede the event
             if event.robot_removed is not None:
                 self._world.remove(down)
         if not self._log.take_event(event, self.time_s) or down is not None:
@@ -193,7 +204,8 @@ class RobotBodies:
             self._set_radio(event.robot_silent, on=False)
         elif event.robot_moved is not None:
             self._world.place(event.robot_moved.robot, event.robot_moved.position)
-            self._send(event, event.robot_moved.robot)
+            if event.robot_moved.robot in self.team.living:
+                self._send(event, event.robot_moved.robot)
         elif event.robot_returns is not None:
             self._return(event)
         elif event.robot_joins is not None:
@@ -211,10 +223,12 @@ class RobotBodies:
 
     def _is_possible(self, event: Event) -> bool:
         """Whether the robot of an event is in a state to which the event applies."""
-        if (down := event.robot_fails or event.robot_removed) is not None:
-            return down in self.team.living
+        if event.robot_fails is not None:
+            return event.robot_fails in self.team.living
+        if event.robot_removed is not None:
+            return event.robot_removed in self._world.ports and not self._is_removed(event.robot_removed)
         if event.robot_moved is not None:
-            return event.robot_moved.robot in self.team.living
+            return event.robot_moved.robot in self._world.ports and not self._is_removed(event.robot_moved.robot)
         if event.robot_silent is not None:
             return event.robot_silent in self._connected
         if event.robot_returns is not None:
@@ -223,6 +237,24 @@ class RobotBodies:
                 return self.team.may_start(robot)  # not if it was killed from outside
             return robot in self._cut_off or self._log.is_out(robot)
         return True
+
+    def _is_removed(self, robot: str) -> bool:
+        return self._log.state.robots[robot].out == RobotRemoved.kind
+
+    def _require_room(self, event: Event) -> None:
+        """Raise ParameterError where an event puts a robot where it cannot stand, which no robot by itself knows."""
+        robots = {name: known.robot for name, known in self._log.state.robots.items() if name in self._world.ports}
+        places = {name: self._world.ports[name].telemetry() for name in robots}
+        there = [(robots[name], said.position) for name, said in places.items() if said and not self._is_removed(name)]
+        if (moved := event.robot_moved) is not None:
+            require_free("robot_moved.position", robots[moved.robot], moved.position, there, self._travel)
+        elif (back := event.robot_returns) is not None and self._is_removed(back) and (said := places[back]):
+            require_clear("robot_returns.position", robots[back], said.position, there)
+
+    @cached_property
+    def _travel(self) -> Travel:
+        """What knows walls and closed areas."""
+        return travel_of(self._setup.problem.mission)
 
     def _fail(self, robot: str) -> None:
         """A robot breaks down, with its process."""

@@ -132,8 +132,8 @@ def _starts(events: Sequence[Event]) -> dict[str, int]:
     """The number of starts of each robot that restarts after a failure."""
     failed, starts = set[str](), dict[str, int]()
     for event in sorted(events, key=lambda event: event.at_s):
-        if event.robot_fails is not None:
-            failed.add(event.robot_fails)
+        if (down := event.robot_fails or event.robot_removed) is not None:
+            failed.add(down)
         elif event.robot_returns in failed and event.robot_returns is not None:
             failed.remove(event.robot_returns)
             starts[event.robot_returns] = starts.get(event.robot_returns, 1) + 1

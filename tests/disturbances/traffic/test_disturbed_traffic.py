@@ -7,7 +7,32 @@ import pytest
 from tests.disturbances.traffic.script import STOPS
 from tests.disturbances.traffic.trial import trial
 
-SEEDS = (3, 8, 10, 12, 16, 20, 22, 24, 85, 96, 102, 260, 922, 1219, 1363, 1613, 1694, 3084, 3154, 3384, 3438)
+SEEDS = (
+    3,
+    8,
+    10,
+    12,
+    16,
+    20,
+    22,
+    24,
+    85,
+    94,
+    96,
+    102,
+    192,
+    260,
+    333,
+    922,
+    1219,
+    1363,
+    1613,
+    1694,
+    3084,
+    3154,
+    3384,
+    3438,
+)
 FEW = (16, 85, 260, 1219)
 """Seeds of the short form; together they have every kind of disturbance."""
 

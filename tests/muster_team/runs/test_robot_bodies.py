@@ -1,6 +1,7 @@
 """What take_event bodies and processes, and what robots say of it, in whatever order it comes."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from muster import Event, Mission, Robot, Task
 from muster.allocation.auctions.auction import Parameters
 from muster.execution.record import NoObserver
+from muster.mission.events import MovedRobot
 from muster.mission.model import MovedTask
 from muster.running.state_estimation import with_state_estimation
 from muster.simulation import NO_NOISE, KinematicWorld, Noise
@@ -65,8 +67,9 @@ def did(*events):
     return WorkReport(events=events, used=1.0, idle=True, settled=True, heard=0)
 
 
-def bodies_of(events, tmp_path, last_words=(), noise=NO_NOISE):
-    mission = Mission(robots=MISSION.robots, tasks=MISSION.tasks, events=events)
+def bodies_of(events, tmp_path, last_words=(), noise=NO_NOISE, radius_m=0.0):
+    robots = tuple(replace(robot, radius_m=radius_m) for robot in MISSION.robots)
+    mission = Mission(robots=robots, tasks=MISSION.tasks, events=events)
     setup = setup_of(mission, tmp_path, method="auction", terms=Parameters(), transport="udp")
     log = TeamLog(setup.problem, NoObserver(), lambda event: None, setup.late)
     world = KinematicWorld(mission, noise=noise)
@@ -147,6 +150,57 @@ def test_a_robot_that_has_no_process_left_does_not_return(tmp_path):
     while robot_bodies.time_s < 0.3:
         robot_bodies.step(1.0)
     assert [event.kind for event in log.events] == ["without_effect"]
+
+
+def put(at_s, robot, *position):
+    return Event(at_s=at_s, robot_moved=MovedRobot(robot=robot, position=position))
+
+
+def test_a_robot_that_has_failed_is_taken_away_once_and_cannot_be_moved_then(tmp_path):
+    kinds = (
+        Event(at_s=0, robot_fails="a"),
+        put(0.1, "a", 3, 3),
+        *(2 * [Event(at_s=0.2, robot_removed="a")]),
+        put(0.3, "a", 4, 4),
+    )
+    robot_bodies, log = bodies_of(kinds, tmp_path)
+    while robot_bodies.time_s < 0.4:
+        robot_bodies.step(1.0)
+    told = [event.kind for event in log.events]
+    assert told == ["robot_fails", "robot_moved", "robot_removed", "without_effect", "without_effect"]
+    assert not [word for _, word in robot_bodies.team.told if isinstance(word, OperatorEvent)]
+    assert math.isnan(robot_bodies._world.positions[0, 0])
+
+
+def test_one_that_was_taken_away_has_a_process_that_may_start_when_it_returns(tmp_path):
+    events = [Event(at_s=0, robot_fails="a"), Event(at_s=1, robot_removed="a"), Event(at_s=2, robot_returns="a")]
+    events += [Event(at_s=1, robot_removed="b"), Event(at_s=2, robot_returns="b")]
+    assert setup_of(
+        Mission(robots=MISSION.robots, tasks=MISSION.tasks, events=tuple(events)),
+        tmp_path,
+        method="auction",
+        terms=Parameters(),
+        transport="udp",
+    ).starts == {"a": 2, "b": 2}
+
+
+def test_nobody_can_put_a_robot_where_another_stands(tmp_path):
+    events = [
+        put(0, "a", 8.9, 0),
+        Event(at_s=0.1, robot_removed="b"),
+        put(0.2, "a", 8.9, 0),
+        Event(at_s=0.3, robot_returns="b"),
+    ]
+    robot_bodies, log = bodies_of(events, tmp_path, radius_m=0.3)
+    while robot_bodies.time_s < 0.4:
+        robot_bodies.step(1.0)
+    refused = [event.reason for event in log.events if event.kind == "event_refused"]
+    assert refused == [
+        "robot_moved.position: [8.9, 0.0]; expected a place clear of b, which is at [9.0, 0.0]",
+        "robot_returns.position: [9.0, 0.0]; expected a place clear of a, which is at [8.9, 0.0]",
+    ]
+    assert "b" in robot_bodies.team.ended
+    assert [event.kind for event in log.events if event.kind.startswith("robot")] == ["robot_removed", "robot_moved"]
 
 
 def test_a_robot_is_accounted_for_from_when_it_joins(tmp_path):

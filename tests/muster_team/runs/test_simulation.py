@@ -8,6 +8,7 @@ import pytest
 import muster
 from muster import Event, Mission, Negotiation, Robot, Task
 from muster.mission.errors import MusterError, ParameterError
+from muster.mission.events import MovedRobot
 from muster.mission.model import DelayedTask, MovedTask
 from muster.simulation import KinematicWorld
 
@@ -81,6 +82,22 @@ def test_they_agree_anew_when_robots_fail_return_or_join_and_tasks_come_move_and
         ("8", "new", "last"), "done"
     )
     assert {robot.id for robot in recording.robots} == {"r_0", "r_1", "r_2", "j"}
+
+
+def test_a_robot_that_is_moved_goes_on_from_there_and_one_that_is_taken_away_returns():
+    mission = line(
+        [
+            Event(at_s=2, robot_moved=MovedRobot(robot="r_0", position=(-12.0, 5.0))),
+            Event(at_s=2, robot_removed="r_2"),
+            Event(at_s=6, robot_returns="r_2"),
+        ]
+    )
+    report, told = carried_out(mission)
+    assert set(report.tasks_done) == {task.id for task in mission.tasks}
+    assert [h.data["robot"] for h in told["robot_moved"]] == ["r_0"]
+    assert [h.data["robot"] for h in told["robot_removed"]] == ["r_2"]
+    assert [h.data["robot"] for h in told["robot_returns"]] == ["r_2"]
+    assert report.contacts == 0
 
 
 def test_when_all_robots_fail_the_mission_ends_with_what_was_done():

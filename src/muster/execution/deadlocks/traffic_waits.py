@@ -110,7 +110,7 @@ class TrafficWaits:
     def look(self, now: float) -> Iterator[WaitsInTraffic | GoesOn]:
         """See who waits now; yields an event of each wait that begins to count, or is over."""
         self.sent_round.clear()
-        self._notice_returns()
+        self._notice_who_is_out()
         for robot, state in self._crew.items():
             left_m = state.way_left_m
             nearer_m = self._nearer_m(state, left_m)
@@ -142,12 +142,15 @@ class TrafficWaits:
             for one in self.members(jam):
                 one.held_s += now - since_s
 
-    def _notice_returns(self) -> None:
-        """Where one that was out takes part again all wait anew: whom they wait for may not be who cut them off."""
+    def _notice_who_is_out(self) -> None:
+        """Count waits anew: for a robot that goes out, as ways lead round it from now on; all, where one returns.
+
+        Whom robots wait for may not be who cut them off.
+        """
         out = {robot for robot, state in self._crew.items() if state.out}
-        if self._out - out:
-            for one in self.progress.values():
-                one.behind_s.clear()
+        for one in self.progress.values():
+            for robot in list(one.behind_s) if self._out - out else out - self._out:
+                one.behind_s.pop(robot, None)
         self._out = out
 
     def with_waits(self, account: TrafficAccount) -> TrafficAccount:

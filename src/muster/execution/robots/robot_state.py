@@ -276,6 +276,12 @@ class RobotState:
         self.wait_cause = self.wait_words = ""
         self.begin_activity(now, Activity.IDLE)
 
+    def put(self, at: Place) -> None:
+        """Take it for where somebody has put it, a free place, until it says itself where it is."""
+        self.at_home, self.left = False, at
+        if self.telemetry is not None:
+            self.telemetry = replace(self.telemetry, position=at)
+
     def stand(self, now: float) -> None:
         """Stop for a pause: a robot under way is sent again later, a robot at work keeps the rest of its work."""
         if self.activity is Activity.WORKING:

@@ -121,7 +121,8 @@ class ReservedTraffic:
 
     def makes_no_room(self, robot: str) -> bool:
         """See `TrafficManager`."""
-        return any(part.robot.id == robot and part.tried >= NO_ROOM_AFTER for part in self._parts)
+        found = (part for part in self._parts if part.robot.id == robot)
+        return any(part.broken and part.tried >= NO_ROOM_AFTER for part in found)
 
     def look(self, now: float) -> None:
         """See how far robots are, plan anew where that is due, and send robots on."""

@@ -118,7 +118,7 @@ export class MissionState {
   openWays() {
     this.cutOffStations.clear();
     for (const [task, reasons] of this.refusals) {
-      const left = Object.entries(reasons).filter(([, reason]) => !reason.startsWith("unreachable"));
+      const left = Object.entries(reasons).filter(([, reason]) => !/^(unreachable|jam)/.test(reason));
       if (left.length) this.refusals.set(task, Object.fromEntries(left));
       else this.refusals.delete(task);
     }
@@ -226,8 +226,14 @@ const CHANGES = {
   },
   robot_fails: (state, { robot }, _, kind) => state.takeOut(robot, kind),
   robot_stuck: (state, { robot }, _, kind) => state.takeOut(robot, kind),
-  robot_removed: (state, { robot }, _, kind) => state.takeOut(robot, kind),
-  robot_moved: (state, { robot }) => state.breakOffWork(robot),
+  robot_removed(state, { robot }, _, kind) {
+    state.takeOut(robot, kind);
+    state.openWays();
+  },
+  robot_moved(state, { robot }) {
+    state.breakOffWork(robot);
+    state.openWays();
+  },
   robot_silent: (state, { robot, goes_on: goesOn = false }, _, kind) => { if (!goesOn) state.takeOut(robot, kind); },
   robot_returns(state, { robot }) {
     if (state.robots.has(robot)) state.robots.get(robot).out = "";
