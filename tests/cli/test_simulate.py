@@ -78,7 +78,7 @@ def test_what_is_printed_for_programs(muster):
         "waiting_by_cause_s", "lateness_s", "missed", "deadlines_missed_s", "within_exceeded_s", "shifts_exceeded_s",
         "traffic",
         "orders", "tasks_forgotten",
-        "ground", "remarks",
+        "ground", "team", "remarks",
     ]  # fmt: skip
     assert len(data["tasks_done"]) == 31
     assert data["tasks_lost"] == []

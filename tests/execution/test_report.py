@@ -54,6 +54,7 @@ def test_it_prints_what_the_command_promises():
         "orders",
         "tasks_forgotten",
         "ground",
+        "team",
         "remarks",
     ]
     assert (data["done_twice"], data["found"], data["remarks"]) == ({}, [], [])

@@ -44,7 +44,7 @@ class Notice:
 
 
 REASONS = 100
-"""The number of reasons for refusals that a robot tells; all are counted."""
+"""The number of reasons for refusals that a robot tells and counts by sender; all are counted."""
 
 
 class Notices(list[Notice]):
@@ -101,10 +101,15 @@ class Memory:
 class Counts:
     """Numbers of messages sent: with news of the sender, repairs of what others lacked, idle heartbeats.
 
-    `refused`: for each sender how many of its messages, or parts of them, were not admitted.
+    `refused`: for each sender and reason how many messages, or parts of them, were not admitted.
     """
 
     news: int = 0
     repairs: int = 0
     heartbeats: int = 0
-    refused: Counter[str] = field(default_factory=Counter)
+    refused: Counter[tuple[str, str]] = field(default_factory=Counter)
+
+    def refuse(self, sender: str, reason: str) -> None:
+        """Count what was refused; beyond REASONS different ones under no sender and reason, so that counts stay few."""
+        is_new = (sender, reason) not in self.refused
+        self.refused[("", "") if is_new and len(self.refused) >= REASONS else (sender, reason)] += 1

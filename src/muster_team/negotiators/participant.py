@@ -205,7 +205,7 @@ class Participant:
 
     def _refuse(self, sender: str, reason: str) -> None:
         """Count what was refused, and tell of it once for each reason."""
-        self.counts.refused[sender] += 1
+        self.counts.refuse(sender, reason)
         self.notices.tell_refused(sender, reason)
 
     @property

@@ -45,6 +45,8 @@ class NodeStatus:
     refused
         messages that were not accepted, by reason: as `PeerSessions.counts`, `malformed`, `unsigned` (not by the key of
         the robot that they name), and `not_admitted` (see `admission`).
+    not_admitted
+        of these the statements that were not admitted, by the sender and the reason.
     lost_here
         as `Transport.lost_here`.
     rivals, superseded
@@ -63,6 +65,7 @@ class NodeStatus:
     sent_bytes: Counter[str]
     received: int
     refused: Counter[str]
+    not_admitted: Counter[tuple[str, str]]
     lost_here: int
     rivals: tuple[int, ...]
     superseded: bool
@@ -159,6 +162,7 @@ class Node:
             sent_bytes=self.sent_bytes.copy(),
             received=self.received,
             refused=self._refused(),
+            not_admitted=negotiator.counts.refused.copy(),
             lost_here=self.transport.lost_here,
             rivals=tuple(sorted(negotiator.rivals)),
             superseded=negotiator.superseded,

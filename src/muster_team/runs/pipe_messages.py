@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from muster.execution.reports.team_report import RefusedOrder
 from muster.mission.model import Event
 from muster.motion.port import Telemetry, Waypoint
 
@@ -72,6 +73,8 @@ class WorkReport:
         whether all robots that it hears have agreed.
     heard
         the number of operator events that it has received.
+    refused_at_once, refused_by_team
+        why it refused operator events since its last report, and all orders that do not count, as far as it knows.
     """
 
     events: Sequence[tuple[float, str, Mapping[str, Any]]]
@@ -79,3 +82,5 @@ class WorkReport:
     idle: bool
     settled: bool
     heard: int
+    refused_at_once: Sequence[str] = ()
+    refused_by_team: Sequence[RefusedOrder] = ()

@@ -27,6 +27,7 @@ from muster_team.processes.process_reports import SHOW, TeamSetup
 from muster_team.processes.team import Team
 from muster_team.runs.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
 from muster_team.runs.team_log import TeamLog
+from muster_team.runs.team_watch import TeamWatch
 
 _STEP_S = 0.05
 """The real time between two steps, seconds."""
@@ -63,6 +64,7 @@ class RobotBodies:
         self._sent_to: dict[str, list[Event]] = {}  # the same by the robot that received them
         self._last_move: dict[str, Event] = {}  # of each task
         self._orders: dict[str, int] = {}  # that bodies were given
+        self.watch = TeamWatch([robot.id for robot in mission.all_robots], setup.timeouts.suspect_s * setup.speed)
         self._agreed_at: Stage | None = None  # of the auction, when its plan was taken in last
         self._asked, self._ask_again_s = -1, 0.0  # how often robots were asked for their view, and when the next is
 
@@ -72,6 +74,9 @@ class RobotBodies:
             self._orders[robot] = self._world.ports[robot].send(report.waypoints)
         elif isinstance(report, WorkReport):
             self._work_reports[robot], self._log.used[robot] = report, report.used
+            self.watch.refused_by_team(robot, report.refused_by_team)
+            for reason in report.refused_at_once:
+                self.watch.refused_at_once(robot, reason)
             told = len(self._log.events)
             for at_s, kind, data in report.events:
                 self._log.take(robot, at_s, kind, data, report.used)
@@ -131,6 +136,8 @@ class RobotBodies:
         self.team.poll(0.0)  # even if the step took all the time: unread reports fill the pipes
         while (left_s := until_s - time.monotonic()) > 0:
             self.team.poll(left_s)
+        statuses = {robot: progress.status for robot, progress in self.team.progress.items()}
+        self.watch.look(self.time_s, self.team.living, self.team.ended, statuses)
         self._take_agreement()
 
     def _check_cameras(self) -> None:
@@ -279,6 +286,7 @@ class RobotBodies:
 
     def _set_radio(self, robot: str, *, on: bool) -> None:
         (self._cut_off.discard if on else self._cut_off.add)(robot)
+        self.watch.radio(robot, self.time_s, on=on)
         self.team.send(robot, RadioState(on))
 
     def _is_valid(self, event: Event) -> bool:

@@ -10,6 +10,7 @@ from muster.execution import ExecutionEvent, Executor, Revision, travel_of, way_
 from muster.execution.peers import Gathering
 from muster.execution.replanning.reallocation import usage_ahead
 from muster.execution.replanning.remaining_problem import RemainingMission
+from muster.execution.reports.team_report import RefusedOrder
 from muster.execution.robots.monitor import exceeds
 from muster.execution.robots.robot_state import Activity
 from muster.mission.errors import MissionError, ParameterError
@@ -113,6 +114,8 @@ class RobotControl:
         self._hand.recall(used)
         self._learned: set[Fact] = set()
         self._answered: set[Fact] = set()  # orders that were refused
+        self.refused_orders: tuple[RefusedOrder, ...] = ()
+        """Orders that do not count, as far as the robot knows."""
         self._dropped: set[str] = set()  # the tasks of those that were known before
         self._known = 0  # the digest of what was learned
         self._first = 0  # the number of the first event of this tick
@@ -284,6 +287,9 @@ class RobotControl:
 
     def _answer(self, orders: Orders) -> None:
         """Give up orders that do not count any more; whoever was given such an order tells why."""
+        self.refused_orders = tuple(
+            RefusedOrder(robot=fact.robot, task=fact.task, reason=reason) for fact, reason in orders.refused.items()
+        )
         for fact, reason in orders.refused.items():
             if fact in self._answered:
                 continue

@@ -91,16 +91,18 @@ class RobotWorker:
         self._events.clear()
         events = [(event.time_s, event.kind, event.data) for event in control.tick(self._now_s)]
         events += [(self._now_s, "event_refused", {"reason": reason}) for reason in self._refused]
-        self._refused.clear()
         did = WorkReport(
             events=events,
             used=control.used,
             idle=control.idle,
             settled=self._node.negotiator.settled,
             heard=self._heard,
+            refused_at_once=tuple(self._refused),
+            refused_by_team=control.refused_orders,
         )
+        self._refused.clear()
         if did != self._reported:
-            self._reported = replace(did, events=[])
+            self._reported = replace(did, events=[], refused_at_once=())
             self._context.pipe.send(did)
 
     def _steer(self, steer: SteerCommand) -> None:

@@ -99,6 +99,7 @@ def negotiate_and_carry_out(
         if robot_bodies.over:
             log.end()
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
+        report = replace(report, team=robot_bodies.watch.report())
         if isinstance(robots, EstimatedWorld):
             report = replace(report, remarks=(*report.remarks, robots.remark))
         report = with_truth(with_found(report, camera_search), mission, robot_bodies.true_places.done)

@@ -27,6 +27,8 @@ MISSION = Mission(
     robots=(Robot(id="a", position=(0, 0)), Robot(id="b", position=(9, 0))), tasks=(Task(id="t", position=(0, 0)),)
 )
 
+STATUS = SimpleNamespace(members=("a", "b"), not_admitted={})
+
 
 class Processes:
     """Robots' processes that do nothing; what is told to them is kept, and they have last words."""
@@ -115,7 +117,7 @@ def test_the_plan_of_a_robot_that_has_gone_on_since_all_agreed_is_not_taken_in(t
     robot_bodies, log = bodies_of([], tmp_path)
     view = SimpleNamespace(stage=Stage(3, b"base"))
     robot_bodies.team.progress = {
-        name: SimpleNamespace(stage=Stage(2, b"base", 1, ended=True), view=view) for name in "ab"
+        name: SimpleNamespace(stage=Stage(2, b"base", 1, ended=True), view=view, status=STATUS) for name in "ab"
     }
     robot_bodies.step(1.0)
     assert log.account.objective_planned is None
@@ -124,7 +126,7 @@ def test_the_plan_of_a_robot_that_has_gone_on_since_all_agreed_is_not_taken_in(t
 def test_a_robot_that_does_not_tell_its_view_holds_up_nobody_and_another_is_asked(tmp_path, monkeypatch):
     robot_bodies, _ = bodies_of([], tmp_path)
     stage = Stage(2, b"base", 1, ended=True)
-    robot_bodies.team.progress = {name: SimpleNamespace(stage=stage, view=None) for name in "ab"}
+    robot_bodies.team.progress = {name: SimpleNamespace(stage=stage, view=None, status=STATUS) for name in "ab"}
     now_s = [100.0]
     monkeypatch.setattr(bodies_module, "_STEP_S", 0.0)
     monkeypatch.setattr(bodies_module.time, "monotonic", lambda: now_s[0])

@@ -1,5 +1,7 @@
 """Robots as real processes, over the real transport, in a simulated world that goes on at the pace of real time."""
 
+import os
+import signal
 import threading
 import time
 
@@ -11,6 +13,7 @@ from muster.mission.errors import MusterError, ParameterError
 from muster.mission.events import MovedRobot
 from muster.mission.model import DelayedTask, MovedTask
 from muster.simulation import KinematicWorld
+from muster_team.processes.team import Team
 
 pytest.importorskip("cryptography", reason="the extra `net` is not installed")
 
@@ -106,6 +109,7 @@ def test_when_all_robots_fail_the_mission_ends_with_what_was_done():
     assert {h.data["robot"] for h in told["robot_fails"]} == {"r_0", "r_1", "r_2"}
     assert all("failed at" in reason for _, reason in report.tasks_lost)
     assert sum(robot.usage_flown for robot in report.robots) > 10  # that of the dead, too
+    assert [(end.robot, end.why) for end in report.team.ended] == [(f"r_{k}", "killed by SIGKILL") for k in range(3)]
 
 
 @pytest.mark.long
@@ -124,6 +128,14 @@ def test_a_robot_that_nobody_hears_goes_on_and_what_is_done_twice_is_told():
     assert "twice" in told
     assert report.as_dict()["done_twice"].keys() == {h.data["task"] for h in told["twice"]}
     assert all(sorted(robots) == ["r_0", "r_1"] for robots in report.done_twice.values())
+    (silence,), (split,) = report.team.silent, report.team.splits
+    assert (silence.robot, silence.from_s, silence.until_s) == (
+        "r_0",
+        pytest.approx(1, abs=1),
+        pytest.approx(60, abs=1),
+    )
+    assert split.groups == (("r_0",), ("r_1",))
+    assert split.until_s > silence.until_s
 
 
 @pytest.mark.long
@@ -165,3 +177,31 @@ def test_what_is_neither_a_plan_nor_a_negotiation_is_refused():
 def test_who_does_not_agree_in_time_does_not_begin():
     with pytest.raises(MusterError, match="no agreement within 0 s"):
         muster.simulate(line(), Negotiation(limit_s=0.0))
+
+
+@pytest.mark.long
+def test_a_robot_that_is_stopped_holds_up_nobody_and_the_report_says_so(monkeypatch):
+    """It stands still until the others have done all that is left; what they began anew is theirs."""
+    teams = []
+    enter = Team.__enter__
+    monkeypatch.setattr(Team, "__enter__", lambda team: teams.append(team) or enter(team))
+    stopped, seen = [], []
+
+    def listen(event):
+        seen.append(event)
+        if event.kind == "starts" and not stopped:
+            stopped.append(event.data["robot"])
+            os.kill(teams[0].pids[stopped[0]], signal.SIGSTOP)
+        others = {e.data["task"] for e in seen if e.kind == "ends" and e.data["robot"] not in stopped}
+        if len(others) == len(line().tasks) and stopped:
+            os.kill(teams[0].pids[stopped[0]], signal.SIGCONT)
+
+    report = muster.simulate(line(), Negotiation(), on_event=listen, speed=10.0)
+    assert not report.tasks_lost
+    (robot,) = stopped
+    (silence,) = (s for s in report.team.silent if s.why == "its process did not answer")
+    assert silence.robot == robot
+    assert silence.until_s - silence.from_s > 40.0
+    others = tuple(f"r_{k}" for k in range(3) if f"r_{k}" != robot)
+    assert {others, (robot,)} in [set(split.groups) for split in report.team.splits]
+    assert report.team.ended == ()

@@ -10,6 +10,7 @@ from typing import Any
 import click
 
 from muster.cli.tables.table import number, print_table
+from muster.cli.tables.team import print_team
 from muster.mission.model import Mission, Tag
 from muster.mission.texts.counting import counted
 
@@ -66,6 +67,7 @@ def print_report(report: Report, mission: Mission, *, with_tasks: bool) -> None:
     _print_lost(report)
     for task, robots in report.get("done_twice", {}).items():
         click.echo(f"{'done twice':<17} {task}, by {', '.join(robots)}")
+    print_team(report.get("team"))
     _print_found(report, mission)
     for remark in report.get("remarks", ()):
         click.echo(f"{'remark':<17} {remark}")

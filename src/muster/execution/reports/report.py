@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from muster.execution.reports.robot_report import RobotReport
+from muster.execution.reports.team_report import TeamReport
 from muster.mission.objectives import lateness, objective_values
 from muster.mission.tables import data_frame, html_line, html_table
 from muster.state.orders import OrdersReport
@@ -226,6 +227,8 @@ class Report:
         such as `waiting_s`, and the objective, are of all.
     ground
         what robots found out that had no map; None: they had it.
+    team
+        what became of the processes of robots that agreed without a centre; None: a plan was carried out.
     remarks
         what else a person should hear of.
     """
@@ -254,6 +257,7 @@ class Report:
     orders: OrdersReport | None = None
     tasks_forgotten: dict[str, int] = field(default_factory=dict)
     ground: GroundReport | None = None
+    team: TeamReport | None = None
     remarks: tuple[str, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
