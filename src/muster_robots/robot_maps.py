@@ -125,8 +125,9 @@ class RobotMaps:
         if origin is None:
             return None
         roll, pitch, yaw = angles(origin[:3, :3])
-        if max(abs(roll), abs(pitch)) > _LEVEL_RAD:
-            raise ParameterError(f"origin: roll {roll:.2f}, pitch {pitch:.2f}; expected a level map")
+        tilt_rad = max(abs(roll), abs(pitch))
+        if tilt_rad > _LEVEL_RAD:
+            raise ParameterError(f"origin: tilted by {tilt_rad:.2f} rad; expected a level map")
         x, y = origin[:2, 3]
         return RobotGrid.of(message.per_cent, message.size, message.cell_m, (float(x), float(y), float(yaw)))
 

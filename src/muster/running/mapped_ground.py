@@ -2,27 +2,28 @@
 
 Each robot maps as its own software does, and tells its map as an occupancy grid. The newest grid of each robot counts.
 What one robot has as an obstacle is an obstacle, also where others have seen it to be free, unless more than nine
-times as many have.
+times as many have. Where a robot has been, others' maps have no obstacles: what they saw there was the robot.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
 from muster.execution.fleet import Fleet
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission
+from muster.mission.model import Mission, Robot
+from muster.motion.grid import Bools, Grid
 from muster.motion.map_world import World, body_of
 from muster.perception.explored_paths import require_travel_by_map
 from muster.perception.robot_grids import RobotGrid, SeenCells, in_cells_of
 from muster.perception.team_map import TeamMap
 from muster.running.exploration import Exploration
 from muster.running.run_request import RunRequest
-from muster.running.team_ground import TeamGround
+from muster.running.team_ground import APART_CELLS, TeamGround
 
 if TYPE_CHECKING:
     from muster.execution import Executor
@@ -80,6 +81,7 @@ class MappedGround(TeamGround):
         super().__init__(mission, world, team_map, Exploration(mission_without_tags, team_map) if explore else None)
         self.fleet = fleet
         self._maps: dict[str, SeenCells] = {}
+        self._tracks: dict[str, _Track] = {}
 
     def begin(self, ports: Mapping[str, RobotPort], executor: Executor) -> None:
         """Merge the maps of the robots as they are now."""
@@ -95,21 +97,57 @@ class MappedGround(TeamGround):
 
     def _merge_new(self) -> bool:
         """Merge the maps that have come; return whether obstacles have changed."""
+        self._follow_robots()
         come = {robot: grid for robot, grid in self.fleet.new_maps().items() if robot in self._executor.crew}
         if not come:
             return False
-        said = {name: port.telemetry() for name, port in self._ports.items() if name in self._executor.crew}
         for robot, grid in come.items():
-            self._maps[robot] = self._without_robots(robot, in_cells_of(self.map.ground.seen.frame, grid), said)
+            cells = in_cells_of(self.map.ground.seen.frame, grid)
+            for other, track in self._tracks.items():
+                if other != robot:
+                    cells.occupied[track.covered] = False
+            self._maps[robot] = cells
         self.map.merge((body_of(self.robot(robot)), cells) for robot, cells in self._maps.items())
         return self.map.end_look()
 
-    def _without_robots(self, robot: str, cells: SeenCells, said: Mapping[str, Telemetry | None]) -> SeenCells:
-        """Return a map without the obstacles that are other robots, where these say that they are."""
-        occupied = np.argwhere(cells.occupied)
-        robots = occupied[~self.are_things(robot, self.map.ground.seen.centres(occupied), said)]
-        cells.occupied[tuple(robots.T)] = False
-        return cells
+    def _follow_robots(self) -> None:
+        """Note which cells robots have covered: what others have there as an obstacle was the robot itself."""
+        frame = self.map.ground.seen.frame
+        for robot, state in self._executor.crew.items():
+            said = self._ports[robot].telemetry() if robot in self._ports else None
+            if said is not None:
+                track = self._tracks.setdefault(robot, _Track(np.zeros(frame.shape, dtype=np.bool_)))
+                track.follow(frame, said, state.robot)
+
+
+@dataclass
+class _Track:
+    """The cells that a robot has covered, with some around them, and what it said last."""
+
+    covered: Bools
+    last: Telemetry | None = None
+
+    def follow(self, frame: Grid, said: Telemetry, robot: Robot) -> None:
+        """Add the cells between where it was and where it is; from anew where it cannot have driven between the two."""
+        last, self.last = self.last, said
+        ends = frame.to_grid(np.array([(last or said).position[:2], said.position[:2]]))
+        within_m = robot.radius_m + APART_CELLS * frame.resolution_m
+        if last is not None:
+            gone_m = float(np.linalg.norm(ends[1] - ends[0])) * frame.resolution_m
+            if gone_m == 0.0:
+                return
+            if gone_m > 2 * robot.speed_mps * (said.time_s - last.time_s) + within_m:
+                ends[0] = ends[1]
+        reach = within_m / frame.resolution_m
+        low = np.maximum(np.floor(ends.min(axis=0) - reach), 0).astype(np.int64)
+        high = np.ceil(ends.max(axis=0) + reach).astype(np.int64)
+        part = np.s_[low[1] : max(high[1], 0), low[0] : max(high[0], 0)]
+        rows, columns = self.covered[part].shape
+        across, up = np.arange(columns) + low[0] + 0.5, (np.arange(rows) + low[1] + 0.5)[:, None]
+        (x, y), along = ends[0], ends[1] - ends[0]
+        share = ((across - x) * along[0] + (up - y) * along[1]) / max(float(along @ along), 1e-12)
+        share = np.clip(share, 0.0, 1.0)
+        self.covered[part] |= np.hypot(across - x - share * along[0], up - y - share * along[1]) <= reach
 
 
 def mapped_ground_for(mission: Mission, fleet: Fleet, request: RunRequest) -> MappedGround | None:
@@ -123,7 +161,7 @@ def mapped_ground_for(mission: Mission, fleet: Fleet, request: RunRequest) -> Ma
     if not request.unknown:
         return None
     if not isinstance(fleet, MappingFleet):
-        raise ParameterError(f"unknown: true; expected false: robots of fleet {request.world} tell no maps")
+        raise ParameterError("unknown: true; expected false: robots of this fleet tell no maps")
     ground = MappedGround(mission, fleet, explore=request.explore)
     fleet.hear_maps()
     return ground

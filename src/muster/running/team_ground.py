@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +11,6 @@ import numpy as np
 
 from muster.execution.reports.report import GroundReport, Report
 from muster.mission.model import Map, Mission, Robot
-from muster.motion.grid import Bools, Floats
 from muster.motion.map_world import World, body_of
 from muster.motion.maps.ros_yaml import write_ros_map
 from muster.perception.explored_paths import ExploredPaths
@@ -23,11 +21,10 @@ from muster.running.explored_cells import ShownMap
 
 if TYPE_CHECKING:
     from muster.execution import Executor
-    from muster.motion.port import Telemetry
 
 SHOW_S = 2.0
 """Seconds between two events that tell how the map has grown."""
-_APART_CELLS = 3
+APART_CELLS = 3
 """Cells around where another robot says that it is in which hits are no obstacles."""
 
 
@@ -120,16 +117,6 @@ class TeamGround:
                 frontiers_seen=len(tasks - set(report.tasks_done)),
             ),
         )
-
-    def are_things(self, robot: str, places: Floats, said: Mapping[str, Telemetry | None]) -> Bools:
-        """Return which places (n, d) at which a robot met something are not where other robots say that they are."""
-        is_thing = np.ones(len(places), dtype=np.bool_)
-        margin_m = _APART_CELLS * self.map.cell_m
-        for one, other in said.items():
-            if other is not None and one != robot:
-                away = np.linalg.norm(places - np.array(other.position)[: places.shape[1]], axis=1)
-                is_thing &= away > self.robot(one).radius_m + margin_m
-        return is_thing
 
     def robot(self, name: str) -> Robot:
         """Return a robot of the crew."""

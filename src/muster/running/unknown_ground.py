@@ -27,7 +27,7 @@ from muster.perception.sphere_scanner import SPHERE_LIDAR
 from muster.perception.team_map import TeamMap
 from muster.perception.voxel_map import SpaceScan
 from muster.running.exploration import Exploration, looks_m
-from muster.running.team_ground import TeamGround
+from muster.running.team_ground import APART_CELLS, TeamGround
 from muster.simulation import SimulatedWorld
 from muster.state.robot_events import RobotAtEnd
 from muster.state.task_events import Arrives, Ends
@@ -184,8 +184,18 @@ class UnknownGround(TeamGround):
         seen = self._world.scan_space(name, SPHERE_LIDAR)
         scan = SpaceScan(eye, heading, seen.ranges, np.isfinite(seen.ranges) & ~seen.on_ground, seen.on_ground)
         ends, _ = scan.points(SPHERE_LIDAR)
-        scan.hits[scan.hits] = self.are_things(name, ends, said)
+        scan.hits[scan.hits] = self._are_things(name, ends, said)
         return scan
+
+    def _are_things(self, robot: str, places: Floats, said: Mapping[str, Telemetry | None]) -> Bools:
+        """Return which places (n, d) at which a robot met something are not where other robots say that they are."""
+        is_thing = np.ones(len(places), dtype=np.bool_)
+        margin_m = APART_CELLS * self.map.cell_m
+        for one, other in said.items():
+            if other is not None and one != robot:
+                away = np.linalg.norm(places - np.array(other.position)[: places.shape[1]], axis=1)
+                is_thing &= away > self.robot(one).radius_m + margin_m
+        return is_thing
 
     def _scan_of(self, name: str, number: int, told: Telemetry | None, said: Mapping[str, Telemetry | None]) -> Scan:
         """One scan from where the robot truly is, with the pose that it takes for its own, as far as it is heard.
@@ -200,7 +210,7 @@ class UnknownGround(TeamGround):
         angles = heading + LIDAR.bearings[scan.hits]
         ends = np.column_stack([x + ranges[scan.hits] * np.cos(angles), y + ranges[scan.hits] * np.sin(angles)])
         is_ruled = self._on_ruled_borders(body_of(self.robot(name)), ends)
-        scan.hits[scan.hits] = self.are_things(name, ends, said) & ~is_ruled
+        scan.hits[scan.hits] = self._are_things(name, ends, said) & ~is_ruled
         return scan
 
     def _on_ruled_borders(self, body: Body, places: Floats) -> Bools:
