@@ -87,7 +87,7 @@ def test_a_team_goes_by_what_its_robots_map_and_touches_nothing():
 
 def test_what_one_robot_has_mapped_another_knows_from_the_beginning():
     """The first robot does not see the wall behind the first wall; the second stands beside it."""
-    walls = ((4.0, 0.0, 0.3, 6.0), (8.0, 0.0, 0.3, 4.0))
+    walls = ((4.0, 0.0, 0.3, 6.0), (8.0, 0.0, 0.1, 4.0))
     alone = room(*walls, tasks=[(11.0, 1.0)])
     beside = Robot(id="far", position=(7.0, 2.0), radius_m=0.2, kind="ground")
     both = replace(alone, robots=(*alone.robots, beside), tasks=(replace(alone.tasks[0], only_robots=("r_0",)),))
@@ -97,7 +97,7 @@ def test_what_one_robot_has_mapped_another_knows_from_the_beginning():
         run.look()
         state = run.executor.crew["r_0"]
         way = shapely.LineString([state.position[:2], *(point[:2] for point in state.points_left)])
-        nearest_m.append(way.distance(shapely.box(8.0, 0.0, 8.3, 4.0)))
+        nearest_m.append(way.distance(shapely.box(8.0, 0.0, 8.1, 4.0)))
         run.stop()
     assert nearest_m[0] == 0.0
     assert nearest_m[1] > 0.1  # of the wall's width nobody knows yet

@@ -27,7 +27,8 @@ def test_a_message_is_read_as_it_is(rospy_there):
 def test_a_mission_is_carried_out_by_the_maps_of_its_robots(mapping, ros):
     (ros.folder / "room.yaml").write_text(ROOM, encoding="utf-8")
     for k in range(2):
-        ros.robot(f"r_{k}", 1, 2 + 2 * k, *(("--maps", "room.yaml") if mapping or not k else ()))
+        maps = ("--maps", "room.yaml") if mapping or not k else ()
+        ros.robot(f"r_{k}", 1, 2 + 2 * k, "--kinematics", "holonomic", *maps)
     wait = ("--wait", "60" if mapping else "20")
     run = ros.muster("room.yaml", "--time-limit", "0.3", "--format", "json", "--unknown", "--known-only", *wait)
     out, err = run.communicate(timeout=110)
