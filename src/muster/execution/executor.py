@@ -144,7 +144,17 @@ class Executor:
         self._asked: list[ExecutionEvent] = []
         leader = NoLeader() if leader is None else leader
         self._changes = Changes(
-            mission, self.state, self.crew, ports, self._travel, self.stations, self._ask, way, on_doors, leader.moved
+            mission,
+            self.state,
+            self.crew,
+            ports,
+            self._travel,
+            self.stations,
+            self._ask,
+            way,
+            on_doors,
+            leader.moved,
+            plan_motion,
         )
         self._alone = peers is None
         self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)

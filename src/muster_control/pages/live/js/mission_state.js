@@ -204,10 +204,10 @@ const CHANGES = {
     state.tasks.get(task).cancelled = true;
     state.tasks.get(task).giveUp();
   },
-  move_task(state, { task, position }) {
+  move_task(state, { task, position, under_way: underWay = false }) {
     if (!state.tasks.has(task)) return;
     state.tasks.get(task).place = three(position);
-    state.tasks.get(task).giveUp();
+    if (!underWay) state.tasks.get(task).giveUp();
     state.refusals.delete(task);
   },
   delay_task: (state, { task, by_s: by }) => state.delays.set(task, (state.delays.get(task) ?? 0) + by),
