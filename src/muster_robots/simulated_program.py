@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -28,6 +29,12 @@ _OPTIONS = [
     click.option("--radius", "radius_m", type=click.FloatRange(0), default=0.2, show_default=True, help="Metres."),
     click.option("--type", metavar="TYPE", help="Its row of a mission's suitability table."),
     click.option(
+        "--maps",
+        type=click.Path(exists=True, dir_okay=False, path_type=Path),
+        metavar="MISSION",
+        help="It maps the obstacles of a mission with a lidar, and tells its map.",
+    ),
+    click.option(
         "--rate", "rate_hz", type=click.FloatRange(1, 200), default=20.0, show_default=True, help="Poses a second."
     ),
 ]
@@ -45,12 +52,15 @@ class Wanted:
         of its steps and its poses.
     says
         of itself, with keys of a robot in a mission file.
+    maps
+        the file of the mission whose obstacles it maps, if it does.
     """
 
     robot: Robot
     namespace: str
     rate_hz: float
     says: dict[str, Any]
+    maps: Path | None = None
 
     def topics(self, name: str) -> str:
         """Its own namespace, such as `/r_0`, by its name in ROS."""
@@ -65,12 +75,19 @@ def robot_options(command: F) -> F:
 
 
 def wanted(
-    robot: str, namespace: str, at: tuple[float, float], height: float, heading: float, rate_hz: float, **body: Any
+    robot: str,
+    namespace: str,
+    at: tuple[float, float],
+    height: float,
+    heading: float,
+    rate_hz: float,
+    maps: Path | None = None,
+    **body: Any,
 ) -> Wanted:
     """What `robot_options` asked for."""
     says = {name: value for name, value in body.items() if value is not None}
     it = replace(Robot(id=robot, position=(*at, height), heading_deg=heading), **says)
-    return Wanted(it, namespace, rate_hz, says)
+    return Wanted(it, namespace, rate_hz, says, maps)
 
 
 def run(command: click.Command, module: str, arguments: Sequence[str] | None) -> None:

@@ -14,11 +14,12 @@ from muster.execution.robots.monitor import Limits
 from muster.execution.robots.robot_state import Activity
 from muster.library import mission_names
 from muster.mission.errors import ParameterError
-from muster.mission.model import DelayedTask, Event, MovedTask
+from muster.mission.model import Action, DelayedTask, Event, MovedTask
 from muster.mission.plan import Plan, Route
 from muster.motion import actions
 from muster.motion.actions import Impossible
 from muster.motion.paths.robot_paths import RobotPaths
+from muster.motion.port import Waypoint
 from muster.state.robot_events import RobotFails, RobotSilent, RobotStuck
 
 SHIPPED = [name for name in mission_names() if name not in ("berlin52", "eil51", "eil76")]
@@ -399,3 +400,57 @@ def test_a_task_is_tried_again_when_the_broken_robot_returns():
     report = muster.simulate(mission, plan_of(r_0=["0"], r_1=["1"]))
     assert sorted(report.tasks_done) == ["0", "1"]
     assert report.contacts == 0
+
+
+def delivering(to, at_s, moved_to, **task):
+    """A robot that brings a load from (6, 0) to a place, which moves meanwhile, and what becomes of that."""
+    action = Action(name="delivery", pickup=(6.0, 0.0))
+    return Mission(
+        robots=(Robot(id="r_0", position=(0.0, 0.0)),),
+        tasks=(Task(id="0", position=to, action=action, **task),),
+        events=(Event(at_s=at_s, move_task=MovedTask(task="0", position=moved_to)),),
+    )
+
+
+@pytest.mark.parametrize(("at_s", "driven_m"), [(2, 14), (9, 9 + 73**0.5)])
+def test_a_load_under_way_is_brought_to_where_its_delivery_has_moved(at_s, driven_m):
+    """Before the pickup the way there is unchanged, after it the robot turns from where it is, three metres on."""
+    executor = carried_out(delivering((16.0, 0.0), at_s, (6.0, 8.0), duration_s=12.0), plan_of(r_0=["0"]))
+    state = executor.crew["r_0"]
+    assert state.position == pytest.approx((6, 8, 0), abs=1e-6)
+    unloads_s = 12 - 8 if at_s == 2 else 12 - 10  # what the way leaves of the duration when it sets out
+    assert executor.ledger.ends_s["0"] == pytest.approx(driven_m + unloads_s, abs=0.4)
+    assert state.used == pytest.approx(driven_m, abs=0.3)
+    assert [event.kind for event in executor.events].count("starts") == 1
+    assert executor.state.tasks["0"].position == (6.0, 8.0)
+    assert executor.state.tasks["0"].action.pickup == (6.0, 0.0)
+
+
+def test_a_load_that_is_being_put_down_stays_where_it_is():
+    executor = carried_out(delivering((9.0, 0.0), 11, (6.0, 8.0), duration_s=9.0), plan_of(r_0=["0"]))
+    assert executor.crew["r_0"].position == pytest.approx((9, 0, 0), abs=1e-6)
+    assert executor.ledger.ends_s["0"] == pytest.approx(15, abs=0.4)
+    assert executor.state.tasks["0"].position == (9.0, 0.0)
+
+
+def test_a_load_under_way_leaves_where_the_exit_has_moved_with_its_delivery():
+    mission = delivering((16.0, 0.0), 9, (6.0, 8.0), entry=(5.0, 0.0), exit=(17.0, 0.0))
+    executor = carried_out(mission, plan_of(r_0=["0"]))
+    assert executor.crew["r_0"].position == pytest.approx((7, 8, 0), abs=1e-6)
+    assert executor.crew["r_0"].used == pytest.approx(9 + 73**0.5 + 1, abs=0.3)
+
+
+def test_work_that_carries_nothing_goes_on_where_it_began():
+    mission = line(5.0, events=[Event(at_s=7, move_task=MovedTask(task="0", position=(2.0, 6.0)))], duration_s=4.0)
+    executor = carried_out(mission, plan_of(r_0=["0"]))
+    assert executor.crew["r_0"].position == pytest.approx((5, 0, 0), abs=1e-6)
+    assert executor.ledger.ends_s["0"] == pytest.approx(9, abs=0.4)
+
+
+def test_a_load_goes_where_it_was_to_go_where_no_way_leads_to_the_new_place():
+    def way(robot, start, goal, *, at_work=False):
+        return None if goal[1] > 5 else (Waypoint(goal),)
+
+    executor = carried_out(delivering((16.0, 0.0), 9, (6.0, 8.0)), plan_of(r_0=["0"]), way=way)
+    assert executor.crew["r_0"].position == pytest.approx((16, 0, 0), abs=1e-6)
+    assert executor.ledger.ends_s["0"] == pytest.approx(16, abs=0.4)

@@ -37,7 +37,7 @@ DATA = {
     "task_refused": OF | {"reason": "unreachable", "blocked_by": "r_1", "others": {"t_1": ["r_2"]}, "for_now": True},
     "new_task": {"task": {"id": "new", "position": [1.0, 2.0]}, "came_s": 1.0},
     "cancel_task": {"task": "pick"},
-    "move_task": {"task": "t_0", "position": [5.0, 6.0]},
+    "move_task": {"task": "t_0", "position": [5.0, 6.0], "under_way": True},
     "delay_task": {"task": "t_0", "by_s": 3.0},
     "load_lies": {"task": "pick", "robot": "r_0", "position": [1.0, 1.0], "load": {"": 1.0}},
     "window_missed": {"task": "timed", "reason": "window: closed", "next_s": None},

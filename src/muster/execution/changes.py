@@ -10,8 +10,8 @@ from muster.execution.record import Tell
 from muster.execution.replanning.travel import Travel
 from muster.execution.robots.robot_energy import RobotEnergy
 from muster.execution.robots.robot_state import Activity, RobotState
-from muster.execution.robots.task_motion import Way, place, straight
-from muster.execution.robots.work_orders import stop_work
+from muster.execution.robots.task_motion import MotionPlanner, Way, place, straight
+from muster.execution.robots.work_orders import lead_elsewhere, stop_work
 from muster.execution.standing_room import require_clear, require_free
 from muster.execution.stations.slots import AT_STATION, Stations
 from muster.mission.errors import MissionError, ParameterError
@@ -20,6 +20,7 @@ from muster.mission.model import Event, Mission, Robot, Task
 from muster.mission.task_relations import tasks_named_by
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
+from muster.motion import actions
 from muster.motion.leg_times import LegTimes
 from muster.motion.port import Place, RobotPort
 from muster.state import MissionState
@@ -27,7 +28,7 @@ from muster.state.robot_events import RobotFails, RobotJoins, RobotMoved, RobotO
 from muster.state.robots import KnownRobot
 from muster.state.station_events import DoorCloses, DoorOpens, StationFails, StationReturns
 from muster.state.task_events import CancelTask, DelayTask, LoadLies, MoveTask, NewTask, WorkBrokenOff
-from muster.state.task_ledger import Ledger
+from muster.state.task_ledger import Ledger, moved
 
 
 @dataclass
@@ -52,6 +53,8 @@ class Changes:
         receives the ids of the doors that are closed, when one closes or opens.
     on_moved
         receives the id of a robot that somebody has put elsewhere.
+    plan_motion
+        what a task makes a robot do.
     """
 
     mission: Mission
@@ -64,6 +67,7 @@ class Changes:
     way: Way = straight
     on_doors: Callable[[Collection[str]], None] = lambda closed: None
     on_moved: Callable[[str], None] = lambda robot: None
+    plan_motion: MotionPlanner = actions.plan
 
     @property
     def ledger(self) -> Ledger:
@@ -245,14 +249,20 @@ class Changes:
         self.ask(CancelTask(task=task))
 
     def _move(self, task: str, to: tuple[float, ...], now: float) -> None:
-        """Work under way goes on where it is."""
+        """Robots that carry a load to a delivery bring it to where that is by now; other work goes on where it is."""
         if len(to) != self.mission.dimensions:
             expected = f"{self.mission.dimensions} coordinates"
             raise ParameterError(f"move_task: {task}: position {list(to)}; expected {expected}")
-        at_work = any(robot.activity is Activity.WORKING for robot in self._at(task))
-        if self.ledger.is_open(task) and not at_work:
+        if not self.ledger.is_open(task):
+            return
+        at_work = [robot for robot in self._at(task) if robot.activity is Activity.WORKING]
+        if not at_work:
             self._leave(task, now)
             self.ask(MoveTask(task=task, position=to))
+            return
+        before = self.ledger.tasks[task]
+        if lead_elsewhere(at_work, before, moved(before, to), self.plan_motion, self.way, now):
+            self.ask(MoveTask(task=task, position=to, under_way=True))
 
     def _delay(self, task: str, by_s: float) -> None:
         if self.ledger.is_open(task):

@@ -144,7 +144,17 @@ class Executor:
         self._asked: list[ExecutionEvent] = []
         leader = NoLeader() if leader is None else leader
         self._changes = Changes(
-            mission, self.state, self.crew, ports, self._travel, self.stations, self._ask, way, on_doors, leader.moved
+            mission,
+            self.state,
+            self.crew,
+            ports,
+            self._travel,
+            self.stations,
+            self._ask,
+            way,
+            on_doors,
+            leader.moved,
+            plan_motion,
         )
         self._alone = peers is None
         self._forecast = Forecast(self.ledger, self.crew, plan_motion, way)
@@ -333,9 +343,8 @@ class Executor:
 
         To be called once at the beginning and after each step of the world, or whenever telemetry may have come.
         """
-        first, before_s = self.events.total, self.now_s
+        first = self.events.total
         self.set_clock(now)
-        self._punctuality.count_waits(now - before_s)
         self._hear()
         for state in self._present:
             self._dispatch.advance(state, now)
@@ -354,9 +363,9 @@ class Executor:
 
     def set_clock(self, now: float) -> None:
         """Advance the clock without reading telemetry: reports and orders that follow happen at this time."""
-        if now < self.now_s:
-            raise ParameterError(f"now: {now:g}; expected at least {self.now_s:g}: time does not go back")
-        self.now_s = now
+        before_s = self.now_s
+        self._set_clock(now)
+        self._punctuality.count_waits(now - before_s)
 
     def come_to(self, now: float) -> None:
         """Advance the clock as `set_clock` does, and let what is due by then happen."""
@@ -365,10 +374,15 @@ class Executor:
 
     def pass_over(self, now: float) -> None:
         """Advance the clock over a pause: robots had nothing to do meanwhile, and count as neither busy nor stuck."""
-        self.set_clock(now)
+        self._set_clock(now)
         for state in self.crew.values():
             state.since_s = state.nearest_s = now
         self._supervisor.pass_over(now)
+
+    def _set_clock(self, now: float) -> None:
+        if now < self.now_s:
+            raise ParameterError(f"now: {now:g}; expected at least {self.now_s:g}: time does not go back")
+        self.now_s = now
 
     @property
     def _present(self) -> list[RobotState]:

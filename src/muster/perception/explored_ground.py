@@ -81,10 +81,17 @@ def frame_of(world: World, radius_m: float) -> Grid:
     return Grid(np.zeros(size, dtype=np.bool_), cell_m, (west, south, 0.0))
 
 
-def map_to_build(world: World, radii_m: Collection[float], frame: Grid | None = None) -> OccupancyMap:
-    """Return an empty map of a world for bodies of some radii, in the cells of `frame_of` unless others are given."""
+def map_to_build(
+    world: World, radii_m: Collection[float], frame: Grid | None = None, *, fills_cells: bool = False
+) -> OccupancyMap:
+    """Return an empty map of a world for bodies of some radii, in the cells of `frame_of` unless others are given.
+
+    Obstacles fill its cells where that is said, and where they are cells of an image.
+    """
     frame = frame_of(world, min(radii_m)) if frame is None else frame
-    return OccupancyMap(frame, max(radii_m) + 2 * frame.resolution_m, fills_cells=world.image is not None)
+    return OccupancyMap(
+        frame, max(radii_m) + 2 * frame.resolution_m, fills_cells=fills_cells or world.image is not None
+    )
 
 
 @dataclass(eq=False)

@@ -131,6 +131,24 @@ class OccupancyMap:
         self._keep_off(fresh)
         return fresh
 
+    def count_anew(self, hits: Counts, passes: Counts) -> tuple[Indices, bool]:
+        """Take over hits and passes that were counted elsewhere, of obstacles that fill cells.
+
+        Returns
+        -------
+        as `see`.
+        """
+        now = are_occupied(hits, passes)
+        fresh: Indices = np.argwhere(now & ~self.occupied)
+        freed = bool((self.occupied & ~now).any())
+        self.hits, self.passes, self.occupied = hits, passes, now
+        at = tuple(np.argwhere(now).T)
+        self._sums[at] = self.centres(np.argwhere(now)) * hits[at][:, None]
+        if freed:
+            self.clearances[:] = np.inf
+        self._keep_off(np.argwhere(now) if freed else fresh)
+        return fresh, freed or len(fresh) > 0
+
     def note_free(self, cells: Bools) -> None:
         """Count cells that were not seen as passed once: others have found them to be free."""
         self.passes[cells & (self.passes == 0) & (self.hits == 0)] = 1

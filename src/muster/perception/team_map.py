@@ -9,7 +9,7 @@ its way on the ground.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -23,6 +23,7 @@ from muster.perception.explored_ground import CERTAIN, ExploredGround, frame_of,
 from muster.perception.laser import Scanner
 from muster.perception.occupancy_map import Scan
 from muster.perception.packed_map import packed, unpack
+from muster.perception.robot_grids import SeenCells
 from muster.perception.sphere_scanner import SphereScanner
 from muster.perception.voxel_map import SpaceScan
 
@@ -49,6 +50,8 @@ class TeamMap:
         The world.
     mission : Mission
         Its robots, those that join included, and its places.
+    fills_cells : bool
+        Whether what is seen are whole cells, as of robots' own maps, and not points.
 
     Attributes
     ----------
@@ -56,7 +59,7 @@ class TeamMap:
         The air; None where all travel is in the plane.
     """
 
-    def __init__(self, truth: World, mission: Mission) -> None:
+    def __init__(self, truth: World, mission: Mission, *, fills_cells: bool = False) -> None:
         rules = ruled_world(truth)
         bodies = [body_of(robot) for robot in mission.all_robots]
         self._dimensions = truth.dimensions
@@ -68,7 +71,7 @@ class TeamMap:
         for body in flat:
             by_rank.setdefault(self._rank(body), []).append(body.radius_m)
         self._layers = [
-            _Layer(rank, ExploredGround(rules, map_to_build(truth, radii, frame)), _NO_CELLS)
+            _Layer(rank, ExploredGround(rules, map_to_build(truth, radii, frame, fills_cells=fills_cells)), _NO_CELLS)
             for rank, radii in sorted(by_rank.items())
         ]
         self.air: ExploredAir | None = None
@@ -156,6 +159,19 @@ class TeamMap:
             self._fresh = np.concatenate([self._fresh, fresh_points])
             if changed:
                 self.air.grown(fresh_points)
+
+    def merge(self, maps: Iterable[tuple[Body, SeenCells]]) -> None:
+        """Replace the map by what maps of single robots say, each of a robot of a body that sees what stops it."""
+        maps = list(maps)
+        for layer in self._layers:
+            hits, passes = (np.zeros(layer.ground.seen.frame.shape, dtype=np.int32) for _ in range(2))
+            for body, cells in maps:
+                rank = self._rank(body)
+                if layer.rank >= rank:
+                    hits += cells.occupied
+                if layer.rank <= rank:
+                    passes += cells.free
+            self._note(layer, *layer.ground.seen.count_anew(hits, passes))
 
     def share_air(self) -> None:
         """Count as free on the ground what was seen to be free in all the air that robots on it take up."""

@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -22,7 +23,7 @@ from muster.execution import (
     way_of,
 )
 from muster.execution.fleet import Fleet, has_simulated_time, is_paused, reason_of
-from muster.mission.errors import NetworkError
+from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.supported_features import require_supported
@@ -31,13 +32,16 @@ from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import RobotPort
 from muster.running.fleet_clock import FleetWithMissionClock, clock_of, start_of
 from muster.running.fleet_in_traffic import FleetInTraffic
+from muster.running.mapped_ground import mapped_ground_for
 from muster.running.observed_run import ObservedRun
 from muster.running.replanning import planning_of
 from muster.running.run_request import OPEN_FLEET, RunRequest
 from muster.running.traffic_choice import manager_for
 from muster.running.wall_time import MissionStart, has_time_limits, require_time_left
 from muster.state import MissionState
+from muster.state.ground_events import GroundUnknown
 from muster.state.run_events import MissionBegins
+from muster.traffic.names import FREE
 from muster.verification.required import require_geometry, require_open_ways
 
 if TYPE_CHECKING:
@@ -48,6 +52,8 @@ LOOK_S = 0.2
 """Seconds between two looks at the robots, where nothing is heard before."""
 LATE_S = 1.0
 """Seconds after its start from which a mission that begins is planned again."""
+_WAIT_S = 10.0
+"""Seconds for which maps are waited for where the settings of a fleet do not say how long robots are."""
 ELSEWHERE_M = 0.5
 """Metres from where a mission says that a robot starts, from which it stands elsewhere."""
 
@@ -95,6 +101,8 @@ def carry_out_live(
             live.hear(live.time_s + LOOK_S)
     finally:
         live.stop()
+    if request.save_map is not None:
+        live.save_map(request.save_map)
     return live.tell_report(live.result())
 
 
@@ -118,7 +126,9 @@ class Live:
     ------
     ParameterError
         if the plan names robots or tasks that the mission does not have, a robot has no port, or the mission's time is
-        over.
+        over; as `MappedGround`.
+    NetworkError
+        if robots are to go by the maps that they tell, and one tells none that is tied to the mission's frame.
     """
 
     def __init__(
@@ -141,6 +151,11 @@ class Live:
             start_of(mission, fleet, request.starts, wall) if zero_s is None else MissionStart.at(mission, zero_s)
         )
         mission, begin_s = self.start.mission, self.start.seconds(clock)
+        ground = self._ground = mapped_ground_for(mission, fleet, request)
+        if ground is not None:
+            halt = getattr(request, "halt", None) or threading.Event()
+            wait_for_robots(ground.fleet, halt, getattr(request.settings, "wait_s", _WAIT_S), "its map")
+            mission = ground.mission
         if state is None:
             require_time_left(mission, begin_s)
             require_open_ways(mission, plan)  # later each robot stands anywhere, and a leg is checked when it is sent
@@ -148,9 +163,13 @@ class Live:
             begin_s = max(begin_s, state.now_s)
         require_supported(mission)
         require_geometry(mission, "a run of real robots")
-        robot_paths = RobotPaths.of(mission) if mission.has_paths else None
+        known_paths = RobotPaths.of(mission) if ground is None and mission.has_paths else None
+        robot_paths = known_paths if ground is None else ground.paths
         manager = manager_for(
-            request.traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world
+            request.traffic if ground is None else FREE,
+            mission,
+            seed=seed,
+            world=None if robot_paths is None else robot_paths.world,
         )
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
         self._fleet = FleetWithMissionClock(managed, begin_s, None if has_simulated_time(fleet) else clock)
@@ -175,6 +194,9 @@ class Live:
             manager.expect(self.executor.outlook)
         if state is None:
             self._say_start(mission, begin_s)
+        if ground is not None:
+            self.executor.plan_again(GroundUnknown(cell_m=ground.cell_m))
+            ground.begin(self._fleet.ports, self.executor)
 
     @property
     def state(self) -> MissionState:
@@ -212,6 +234,8 @@ class Live:
             self.executor.pass_over(self.time_s)
         self.executor.tick(self.time_s)
         self.executor.clock_lag.add(self.time_s - self.executor.now_s)
+        if self._ground is not None:
+            self._ground.look(self.executor.now_s)
         self.tell_places()
 
     def hear(self, until_s: float) -> None:
@@ -267,7 +291,19 @@ class Live:
             left = ", ".join(task.id for task in self.executor.ledger.open)
             report = compared_in_part(report, self.executor.account)
             report = replace(report, remarks=(*report.remarks, f"interrupted; not done: {left or 'the ways home'}"))
-        return report
+        return report if self._ground is None else self._ground.with_ground(report)
+
+    def save_map(self, file: str | Path) -> None:
+        """Write the map that was merged of those of the robots; see `TeamGround.save`.
+
+        Raises
+        ------
+        ParameterError
+            if the robots have a map.
+        """
+        if self._ground is None:
+            raise ParameterError(f"save_map: {file}; expected robots without a map")
+        self._ground.save(Path(file))
 
 
 class _Heard(Protocol):

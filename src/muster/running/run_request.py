@@ -149,15 +149,15 @@ class RunRequest(Settings):
     )
     unknown: bool = spec(
         Flag(),
-        "robots have no map: they build it with their lidars, and plan by it; see docs/unknown-ground.md",
+        "robots have no map: they build it with their lidars, and plan by it; robots on ROS by the maps that they "
+        "tell; see docs/unknown-ground.md",
         default=False,
-        counts=SIMULATED,
     )
     explore: bool = spec(
         Flag(),
-        "frontiers of the map that is built become tasks; with unknown, where something is to be found they do anyway",
+        "frontiers of the map that is built become tasks; with unknown, where something is to be found in a simulated "
+        "world they do anyway",
         default=False,
-        counts=SIMULATED,
     )
     starts: str = spec(
         Choice(STARTS),

@@ -17,7 +17,7 @@ from muster.motion.actions.tolerance import ends_at_its_place, tolerance_m
 from muster.running.state_estimation import LocalisedPort, RobotsInWorld
 from muster.simulation import SimulatedWorld
 from muster.state import ExecutionEvent, OtherEvent
-from muster.state.task_events import Ends, Starts
+from muster.state.task_events import Ends, MoveTask, Starts
 
 TagOf = Callable[[str], int | None]
 """The tag that a task has come of, by the task's id; None: of none."""
@@ -72,6 +72,8 @@ class TruePlaces:
         for event in events:
             if isinstance(event, Starts):
                 self._begin(tasks[event.task], event.team or (event.robot,))
+            elif isinstance(event, MoveTask) and event.task in self._under_way:
+                self._under_way[event.task] = tasks[event.task]
             elif isinstance(event, Ends) and (off := self._end(event.task)) is not None:
                 yield off
 

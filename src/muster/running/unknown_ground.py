@@ -10,27 +10,24 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from muster.execution.reports.report import GroundReport, Report
-from muster.mission.model import Map, Mission, Robot
+from muster.execution.reports.report import Report
+from muster.mission.model import Mission, Robot
 from muster.motion.grid import Bools, Floats
-from muster.motion.map_world import Body, World, body_of
-from muster.motion.maps.ros_yaml import write_ros_map
+from muster.motion.map_world import Body, body_of
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.unreachable_places import checked_world
-from muster.perception.explored_paths import ExploredPaths, require_travel_by_map
+from muster.perception.explored_paths import require_travel_by_map
 from muster.perception.laser import LIDAR
-from muster.perception.map_zones import zones_of
 from muster.perception.occupancy_map import Scan
 from muster.perception.sphere_scanner import SPHERE_LIDAR
 from muster.perception.team_map import TeamMap
 from muster.perception.voxel_map import SpaceScan
 from muster.running.exploration import Exploration, looks_m
-from muster.running.explored_cells import ShownMap
+from muster.running.team_ground import APART_CELLS, TeamGround
 from muster.simulation import SimulatedWorld
 from muster.state.robot_events import RobotAtEnd
 from muster.state.task_events import Arrives, Ends
@@ -41,14 +38,10 @@ if TYPE_CHECKING:
 
 LOOK_S = 0.5
 """Seconds between two scans of a robot that moves."""
-SHOW_S = 2.0
-"""Seconds between two events that tell how the map has grown."""
 KEEP_S = 5.0
 """Seconds between two snapshots of the map."""
 _ON_BORDER_M = 0.02
 """From the border of a zone in which a beam ends there."""
-_APART_CELLS = 3
-"""Cells around where another robot says that it is in which hits are no obstacles."""
 
 
 @dataclass
@@ -69,8 +62,8 @@ class _Lidar:
     unsent: list[Scan | SpaceScan] = field(default_factory=list)
 
 
-class UnknownGround:
-    """The ground of a run whose robots have no map.
+class UnknownGround(TeamGround):
+    """The ground of a simulated run whose robots have no map; see `TeamGround`.
 
     Parameters
     ----------
@@ -92,33 +85,15 @@ class UnknownGround:
 
     def __init__(self, mission: Mission, *, explore: bool) -> None:
         require_travel_by_map(mission)
-        self._truth = checked_world(mission)
-        self.map = TeamMap(self._truth, mission)
-        self.paths = ExploredPaths(self.map)
-        self.mission = without_obstacles(mission, self.map.rules)
-        self._with_map = RobotPaths(self._truth)
-        self._shown = ShownMap(self.map)
-        self._exploration = Exploration(mission, self.map) if explore or mission.tags else None
+        truth = checked_world(mission)
+        team_map = TeamMap(truth, mission)
+        super().__init__(mission, truth, team_map, Exploration(mission, team_map) if explore or mission.tags else None)
+        self._with_map = RobotPaths(truth)
         self._lidars: dict[str, _Lidar] = {}
         self._ways: dict[str, _Way] = {}
-        self._turned = 0
         self._told = 0
-        self._shown_s = -math.inf
         self._kept_s, self._kept = -math.inf, dict[str, Any]()
         self.due_s = -math.inf
-
-    def save(self, file: Path) -> None:
-        """Write the map in the form of ROS: a file (.yaml), its image (.pgm) beside it.
-
-        In space that is the ground as it is for the widest robots on it; the mission is written beside it
-        (.mission.yaml), with what was seen in the air as zones.
-        """
-        seen = self.map.ground.seen
-        write_ros_map(file, seen.known, seen.occupied, seen.frame)
-        if self.map.air is not None and self.mission.map is not None:
-            zones = (*self.mission.map.zones, *zones_of(self.map.air.seen))
-            built = replace(self.mission, map=replace(self.mission.map, zones=zones))
-            built.save(file.with_suffix(".mission.yaml"))
 
     def snapshot(self) -> Mapping[str, Any]:
         """Return the map as plain data for `begin`; it is some seconds old at most."""
@@ -143,11 +118,6 @@ class UnknownGround:
                 self._exploration.resume(executor)
         self.look(world.time_s)
 
-    @property
-    def cell_m(self) -> float:
-        """The side of a cell of the map, metres."""
-        return round(self.map.cell_m, 6)
-
     def look(self, now: float) -> None:
         """Let robots scan if that is due, go other ways where theirs turn out to be closed, and explore."""
         if now < self.due_s - 1e-9:
@@ -155,36 +125,17 @@ class UnknownGround:
         self.due_s = now + LOOK_S
         self._executor.set_clock(now)
         said = {name: port.telemetry() for name, port in self._ports.items()}
-        if self._scan(now, said):
-            self.paths.grown()
-        closed = [name for name in self._executor.crew if self._is_closed(name)]
-        self._turned += len(closed)
-        self._executor.go_other_ways(closed)
-        if self._exploration is not None:
-            self._exploration.look(self._executor, now)
+        self.follow_map(now, changed=self._scan(now, said))
         self._measure_ways()
-        if now >= self._shown_s + SHOW_S or self._executor.done:
-            self._shown_s = now
-            if (grown := self._shown.event()) is not None:
-                self._executor.emit(grown)
+        self.show(now)
 
     def with_ground(self, report: Report) -> Report:
         """Return a report with what was explored, and ways beside those with the map."""
         self._measure_ways()
         driven, known = (sum(getattr(way, name) for way in self._ways.values()) for name in ("driven_m", "with_map_m"))
-        tasks: set[str] = set() if self._exploration is None else self._exploration.tasks
-        return replace(
-            report,
-            tasks_lost=tuple((task, why) for task, why in report.tasks_lost if task not in tasks),
-            ground=GroundReport(
-                explored_m2=self._shown.explored_m2,
-                driven_m=driven,
-                with_map_m=known,
-                ways_closed=self._turned,
-                frontiers=len(tasks),
-                frontiers_seen=len(tasks - set(report.tasks_done)),
-            ),
-        )
+        report = super().with_ground(report)
+        assert report.ground is not None
+        return replace(report, ground=replace(report.ground, driven_m=driven, with_map_m=known))
 
     def _scan(self, now: float, said: Mapping[str, Telemetry | None]) -> bool:
         """Let robots scan; return whether the map of obstacles has changed."""
@@ -201,7 +152,7 @@ class UnknownGround:
                 told = said.get(name) if heard else None
                 lidar.unsent += self._scans_of(name, number, told, said)
             for scan in lidar.unsent if heard else ():
-                self._enter(scan, self._robot(name))
+                self._enter(scan, self.robot(name))
             if heard:
                 lidar.unsent.clear()
         return self.map.end_look()
@@ -219,7 +170,7 @@ class UnknownGround:
         scans: list[Scan | SpaceScan] = []
         if self.map.air is not None:
             scans.append(self._space_scan_of(name, number, told, said))
-        if self.map.air is None or self._robot(name).kind != "air":
+        if self.map.air is None or self.robot(name).kind != "air":
             scans.append(self._scan_of(name, number, told, said))
         return scans
 
@@ -236,14 +187,14 @@ class UnknownGround:
         scan.hits[scan.hits] = self._are_things(name, ends, said)
         return scan
 
-    def _are_things(self, name: str, ends: Floats, said: Mapping[str, Telemetry | None]) -> Bools:
-        """Whether a robot's beams that ended at places (n, d) met no other robot, where those say that they are."""
-        is_thing = np.ones(len(ends), dtype=np.bool_)
-        margin_m = _APART_CELLS * self.map.cell_m
+    def _are_things(self, robot: str, places: Floats, said: Mapping[str, Telemetry | None]) -> Bools:
+        """Return which places (n, d) at which a robot met something are not where other robots say that they are."""
+        is_thing = np.ones(len(places), dtype=np.bool_)
+        margin_m = APART_CELLS * self.map.cell_m
         for one, other in said.items():
-            if other is not None and one != name:
-                away = np.linalg.norm(ends - np.array(other.position)[: ends.shape[1]], axis=1)
-                is_thing &= away > self._robot(one).radius_m + margin_m
+            if other is not None and one != robot:
+                away = np.linalg.norm(places - np.array(other.position)[: places.shape[1]], axis=1)
+                is_thing &= away > self.robot(one).radius_m + margin_m
         return is_thing
 
     def _scan_of(self, name: str, number: int, told: Telemetry | None, said: Mapping[str, Telemetry | None]) -> Scan:
@@ -258,7 +209,7 @@ class UnknownGround:
         scan = Scan.of((float(x), float(y), heading), ranges)
         angles = heading + LIDAR.bearings[scan.hits]
         ends = np.column_stack([x + ranges[scan.hits] * np.cos(angles), y + ranges[scan.hits] * np.sin(angles)])
-        is_ruled = self._on_ruled_borders(body_of(self._robot(name)), ends)
+        is_ruled = self._on_ruled_borders(body_of(self.robot(name)), ends)
         scan.hits[scan.hits] = self._are_things(name, ends, said) & ~is_ruled
         return scan
 
@@ -266,24 +217,12 @@ class UnknownGround:
         """Whether places (n, 2) are on the border of a zone that a body may not enter, and that is no obstacle."""
         import shapely
 
-        image = self._truth.image
+        image = self._world_of_mission.image
         within_m = _ON_BORDER_M if image is None else image.resolution_m
         on = np.zeros(len(places), dtype=np.bool_)
-        for area in self.paths.world.stopping(body, self._truth.dimensions == 3):
+        for area in self.paths.world.stopping(body, self._world_of_mission.dimensions == 3):
             on |= shapely.distance(area.polygon.exterior, shapely.points(places)) <= within_m
         return on
-
-    def _robot(self, name: str) -> Robot:
-        return self._executor.crew[name].robot
-
-    def _is_closed(self, name: str) -> bool:
-        """Whether obstacles that were not known are in the way of a robot."""
-        state = self._executor.crew[name]
-        if state.out or not state.points_left:
-            return False
-        size = self._truth.dimensions
-        way = np.array([state.position[:size], *(point[:size] for point in state.points_left)])
-        return self.map.is_closed(body_of(state.robot), way)
 
     def _measure_ways(self) -> None:
         """Compare what robots drove from arrival to arrival with the ways that the true map has."""
@@ -307,19 +246,12 @@ class UnknownGround:
             way, number = self._ways[name], list(self._world.ports).index(name)
             place = self._world.positions[number].copy()
             if not isinstance(event, Ends):
-                size = self._truth.dimensions
-                leg = self._with_map.leg_m(body_of(self._robot(name)), tuple(way.at[:size]), tuple(place[:size]))
+                size = self._world_of_mission.dimensions
+                leg = self._with_map.leg_m(body_of(self.robot(name)), tuple(way.at[:size]), tuple(place[:size]))
                 if math.isfinite(leg):
                     way.with_map_m += leg
                     way.driven_m += driven[name] - way.driven_before_m
             way.at, way.driven_before_m = place, driven[name]
-
-
-def without_obstacles(mission: Mission, rules: World) -> Mission:
-    """Return a mission whose map has its boundary, no-fly zones and doors alone."""
-    assert rules.boundary is not None
-    corners = tuple((float(x), float(y)) for x, y in rules.boundary.exterior.coords[:-1])
-    return replace(mission, map=Map(boundary=corners, zones=tuple(area.zone for area in rules.areas)))
 
 
 def _is_heard(said: Telemetry | None, now: float, dt_s: float) -> bool:

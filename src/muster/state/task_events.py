@@ -203,14 +203,18 @@ class CancelTask(ExecutionEvent):
 
 @happens("move_task", "task {task} is moved to {position}", mark=words.CHANGE)
 class MoveTask(ExecutionEvent):
-    """A task is elsewhere from now on: metres in the map frame."""
+    """A task is elsewhere from now on: metres in the map frame.
+
+    `under_way`: a delivery whose load is on its way, which is brought to the new place; otherwise nobody is at it.
+    """
 
     task: str
     position: Position
+    under_way: bool = False
 
     def change(self, state: MissionState) -> None:
         if self.task in state.ledger.tasks:
-            state.ledger.move(self.task, self.position)
+            state.ledger.move(self.task, self.position, under_way=self.under_way)
 
 
 @happens("delay_task", "task {task} takes {by_s} s longer", mark=words.CHANGE)

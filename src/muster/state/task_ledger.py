@@ -329,11 +329,16 @@ class Ledger:
             for robot in [robot for robot, reason in refusals.items() if reason.startswith(("unreachable", "jam"))]:
                 del refusals[robot]
 
-    def move(self, task: str, to: Point) -> None:
-        """A task is elsewhere from now on: robots may try it that could not do it where it was."""
+    def move(self, task: str, to: Point, *, under_way: bool = False) -> None:
+        """A task is elsewhere from now on: robots may try it that could not do it where it was.
+
+        Work under way goes on there, where that is said; otherwise nobody is at it any more.
+        """
         self.tasks[task] = moved(self.tasks[task], to)
         self._model = None
-        self.give_up(task)
+        self.touched[task] = None
+        if not under_way:
+            self.give_up(task)
         self.refusals.pop(task, None)
 
     def delay(self, task: str, by_s: float) -> None:

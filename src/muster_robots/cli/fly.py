@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @mission_argument
-@real_options("mavlink", MavlinkSettings)
+@real_options("mavlink", MavlinkSettings, without=("unknown", "explore"))
 def command(mission: MissionFile, options: RealRunOptions) -> int:
     """Carry out a plan of a MISSION with drones on PX4 or ArduPilot, over MAVLink.
 

@@ -20,6 +20,7 @@ from muster.motion.avoidance_names import require_avoidance
 from muster.motion.map_world import World, body_of
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import Place
+from muster.perception.robot_grids import RobotGrid
 from muster_robots.discovery import NAME, pose_topics, topics_in
 from muster_robots.fleet_settings import Ros1Settings
 from muster_robots.ros1.clock import Forward, MissionClock
@@ -27,6 +28,7 @@ from muster_robots.ros1.joining import Ros1Newcomers
 from muster_robots.ros1.map_frame import MapFrame
 from muster_robots.ros1.node import SHUT_DOWN, is_ending, publish, time_of_ros
 from muster_robots.ros1.port import Ros1Port
+from muster_robots.ros1.robot_maps import Ros1Maps
 from muster_robots.ros1.ros import TFMessage, rospy
 from muster_robots.ros1.static_frames import static_frames
 from muster_robots.steering import STILL, Steering
@@ -89,6 +91,7 @@ class Ros1Fleet:
         self._static = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
         if frames := static_frames(mission, self.topics, frame=self._frame.name, odometry=how.odometry):
             publish(self._static, TFMessage(frames))
+        self._maps, self._hears_maps = Ros1Maps(self._frame), False
         self._ports: dict[str, Ros1Port] = {}
         self._events: list[Event] = []
         for robot in mission.robots:
@@ -163,13 +166,26 @@ class Ros1Fleet:
         self._require_steered()
         if isinstance(self._now, Forward) and not self._now.has_begun:
             return dict.fromkeys(self._all(), "/use_sim_time is set, and nothing is on /clock")
-        return {
+        missing = {
             name: self._frame.untied(port.untied)
             if port.untied
             else f"nothing on {self.topics(name)}/odom or {self._pose_topic(name) or self.topics(name) + '/pose'}"
             for name, port in self._all().items()
             if port.telemetry() is None
         }
+        without_map = {name: why for name in self._all() if (why := self._maps.missing(name))}
+        return without_map | missing
+
+    def hear_maps(self) -> None:
+        """See `MappingFleet`."""
+        with self._lock:
+            self._hears_maps = True
+            for robot in self._ports:
+                self._maps.listen(robot, self.topics(robot))
+
+    def new_maps(self) -> Mapping[str, RobotGrid]:
+        """See `MappingFleet`."""
+        return self._maps.new()
 
     def stop(self) -> None:
         """See `Fleet`. A node that ROS has shut down cannot tell anybody: robots stand by their own drivers then.
@@ -195,6 +211,7 @@ class Ros1Fleet:
         for port in self._all().values():
             port.close()
         self._newcomers.close()
+        self._maps.close()
         self._frame.close()
         self._tf.unregister()
         self._static.unregister()
@@ -272,6 +289,8 @@ class Ros1Fleet:
             for port in self._newcomers.look():
                 with self._lock:
                     self._ports[port.robot] = port
+                    if self._hears_maps:
+                        self._maps.listen(port.robot, self.topics(port.robot))
                 self.report(Event(at_s=self.time_s, robot_joins=port.body))
 
 

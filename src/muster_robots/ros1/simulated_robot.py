@@ -2,7 +2,8 @@
 
 It moves exactly by its kinematics, takes `<robot>/cmd_vel` (stands if that stops for half a second) and, where nobody
 tells it velocities, `<robot>/WP`; it says `<robot>/odom`, tf `map` -> `<robot>/base_link`, and on the parameter server
-(`<robot>/muster`) what it can do. Where `/use_sim_time` is set it moves by /clock.
+(`<robot>/muster`) what it can do. With `--maps` it maps obstacles with a lidar, and tells its map on `<robot>/map`.
+Where `/use_sim_time` is set it moves by /clock.
 """
 
 from __future__ import annotations
@@ -18,8 +19,9 @@ from muster.motion.frames import enu_to_flu
 from muster.motion.grid import Floats
 from muster_robots.ros1.message_conversion import fill_pose, matrix_of, place_and_heading, tf_of, velocity_of
 from muster_robots.ros1.node import become_node, hear, publish, time_of_ros
-from muster_robots.ros1.ros import Odometry, PoseStamped, TFMessage, Twist, rospy
+from muster_robots.ros1.ros import OccupancyGrid, Odometry, PoseStamped, TFMessage, Twist, rospy
 from muster_robots.simulated_body import SimulatedBody
+from muster_robots.simulated_mapping import SimulatedMapping
 from muster_robots.simulated_program import Wanted, robot_options, run, wanted
 
 _TICK_S = 0.005
@@ -28,6 +30,8 @@ _TICK_S = 0.005
 
 class SimulatedRobot:
     """One robot in the world of ROS; this process is a node by then."""
+
+    _mapping: SimulatedMapping | None = None
 
     def __init__(self, it: Wanted) -> None:
         topics = it.topics(it.robot.id)
@@ -40,6 +44,9 @@ class SimulatedRobot:
         self._lock = threading.Lock()
         self._poses = rospy.Publisher(f"{topics}/odom", Odometry, queue_size=1)
         self._tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
+        if it.maps is not None:
+            self._mapping = SimulatedMapping(it.maps, it.robot)
+            self._maps = rospy.Publisher(f"{topics}/map", OccupancyGrid, queue_size=1, latch=True)
         self._heard = [
             hear(f"{topics}/cmd_vel", Twist, self._take_velocity, queue_size=1, tcp_nodelay=True),
             hear(f"{topics}/WP", PoseStamped, self._take_goal, queue_size=1),
@@ -69,6 +76,8 @@ class SimulatedRobot:
         twist.angular.z = float(rates[3])
         publish(self._poses, message)
         publish(self._tf, TFMessage([tf_of("map", message.child_frame_id, place, heading)]))
+        if self._mapping is not None and self._mapping.look(self._now(), place, heading):
+            publish(self._maps, _map_message(self._mapping))
 
     def _take_velocity(self, message: Any) -> None:
         with self._lock:
@@ -79,6 +88,16 @@ class SimulatedRobot:
         if matrix is not None:
             with self._lock:
                 self._body.go_to(*place_and_heading(matrix))
+
+
+def _map_message(mapping: SimulatedMapping) -> Any:
+    (rows, columns), (x, y, yaw) = mapping.frame.shape, mapping.frame.origin
+    message = OccupancyGrid()
+    message.header.frame_id, message.header.stamp = "map", rospy.Time.now()
+    message.info.resolution, message.info.width, message.info.height = mapping.frame.resolution_m, columns, rows
+    fill_pose(message.info.origin, (x, y, 0.0), yaw)
+    message.data = mapping.per_cent().tolist()
+    return message
 
 
 @click.command()

@@ -49,9 +49,9 @@ class DdsMiddleware:
         """See `Middleware`."""
         return DdsWriter(self._dds, self._participant, topic, message)
 
-    def reader(self, topic: str, message: type[M]) -> DdsReader[M]:
+    def reader(self, topic: str, message: type[M], *, latched: bool = False) -> DdsReader[M]:
         """See `Middleware`."""
-        return DdsReader(self._dds, self._participant, topic, message)
+        return DdsReader(self._dds, self._participant, topic, message, latched=latched or topic in LATCHED)
 
     def navigator(self, action: str) -> Navigator:
         """Actions are calls, and every make of DDS has its own header for what ROS 2 calls."""
@@ -101,9 +101,9 @@ class DdsWriter(Generic[M]):
 class DdsReader(Generic[M]):
     """See `middleware.Reader`."""
 
-    def __init__(self, dds: _Dds, participant: Any, topic: str, message: type[M]) -> None:
+    def __init__(self, dds: _Dds, participant: Any, topic: str, message: type[M], *, latched: bool) -> None:
         self._message = message
-        self._reader = dds.reader(participant, _dds_topic(topic), _idl(message))
+        self._reader = dds.reader(participant, _dds_topic(topic), _idl(message), latched=latched)
 
     def take(self) -> list[M]:
         samples = self._reader.take(KEPT)
@@ -134,8 +134,8 @@ class _Dds:
     def writer(self, participant: Any, topic: str, kind: Any) -> Any:
         return self._writer(participant, self._topic(participant, topic, kind), qos=self._publishing)
 
-    def reader(self, participant: Any, topic: str, kind: Any) -> Any:
-        quality = self._hearing_latched if topic in map(_dds_topic, LATCHED) else self._hearing
+    def reader(self, participant: Any, topic: str, kind: Any, *, latched: bool) -> Any:
+        quality = self._hearing_latched if latched else self._hearing
         return self._reader(participant, self._topic(participant, topic, kind), qos=quality)
 
     def publications(self, participant: Any) -> Any:

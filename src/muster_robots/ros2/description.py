@@ -5,6 +5,7 @@ A message is a frozen dataclass with a `NAME` (`package/Type`) whose fields have
 
 from __future__ import annotations
 
+from array import array as packed_array
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
 from functools import partial
@@ -35,6 +36,8 @@ UInt8 = Annotated[int, "uint8"]
 Flag = Annotated[bool, "bool"]
 Text = Annotated[str, "string"]
 Bytes = Annotated[bytes, "uint8", Length(0)]
+SignedBytes = Annotated[bytes, "int8", Length(0)]
+"""Numbers from -128 to 127, each a byte."""
 
 
 class Message:
@@ -89,6 +92,8 @@ def to_foreign(
 
     def value(field: Field, own: Any) -> Any:
         if isinstance(field.kind, str):
+            if field.is_list and field.kind == "int8":
+                own = memoryview(own).cast("b")
             return array(own, field.kind) if field.is_list else own
         convert = partial(to_foreign, kind_of=kind_of, ros=ros, array=array)
         return [convert(item) for item in own] if field.is_list else convert(own)
@@ -104,6 +109,8 @@ def from_foreign(kind: type[M], foreign: Any, *, ros: int = ROS2) -> M:
         if not field.is_list:
             return theirs if isinstance(field.kind, str) else from_foreign(field.kind, theirs, ros=ros)
         if isinstance(field.kind, str):
+            if field.kind == "int8":
+                return packed_array("b", theirs).tobytes()
             return bytes(theirs) if field.kind == "uint8" else tuple(map(float, theirs))
         return tuple(from_foreign(field.kind, one, ros=ros) for one in theirs)
 

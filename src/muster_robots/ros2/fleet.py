@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Literal
 from muster.mission.errors import NetworkError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.system.clock import Clock, SystemClock
+from muster.perception.robot_grids import RobotGrid
 from muster_robots.discovery import topics_in
 from muster_robots.ros2.goals import Goals, Nav2Goals, PoseGoals
 from muster_robots.ros2.joining import Ros2Newcomers
@@ -25,6 +26,7 @@ from muster_robots.ros2.middleware import Middleware
 from muster_robots.ros2.names import ros_names
 from muster_robots.ros2.open_middleware import open_middleware
 from muster_robots.ros2.port import Arrival, Ros2Port
+from muster_robots.ros2.robot_maps import Ros2Maps
 
 if TYPE_CHECKING:
     from muster_robots.ros2.target_localization import Ros2TargetLocalization
@@ -93,6 +95,7 @@ class Ros2Fleet:
         except BaseException:
             self._middleware.close()
             raise
+        self._names, self._maps, self._hears_maps = names, Ros2Maps(self._middleware, self._frames), False
         self._newcomers = self._looks(names) if joins else None
 
     @property
@@ -118,7 +121,18 @@ class Ros2Fleet:
     def robots_not_ready(self) -> dict[str, str]:
         """Robots of the mission that cannot be sent anywhere yet, and what is missing, by what has come until now."""
         self._hear_for(0.0)
-        return {name: port.missing for name, port in self._ports.items() if port.missing}
+        missing = {robot: port.missing or self._maps.missing(robot) for robot, port in self._ports.items()}
+        return {name: why for name, why in missing.items() if why}
+
+    def hear_maps(self) -> None:
+        """See `MappingFleet`."""
+        self._hears_maps = True
+        for robot in self._ports:
+            self._maps.listen(robot, self._topics(self._names.get(robot, robot)))
+
+    def new_maps(self) -> Mapping[str, RobotGrid]:
+        """See `MappingFleet`."""
+        return self._maps.new()
 
     def stop(self) -> None:
         """See `Fleet`: goals become where robots are, or are cancelled. One that fails does not keep it from others.
@@ -175,6 +189,8 @@ class Ros2Fleet:
         found = [] if self._newcomers is None else self._newcomers.look(self.time_s)
         for port in found:
             self._ports[port.robot] = port
+            if self._hears_maps:
+                self._maps.listen(port.robot, self._topics(port.robot))
         return [Event(at_s=self.time_s, robot_joins=port.body) for port in found]
 
     def _found(self) -> list[Event]:

@@ -100,8 +100,8 @@ class Middleware(Protocol):
         """Who publishes on a topic (`/r_0/goal_pose`)."""
         ...
 
-    def reader(self, topic: str, message: type[M]) -> Reader[M]:
-        """A subscriber of a topic."""
+    def reader(self, topic: str, message: type[M], *, latched: bool = False) -> Reader[M]:
+        """A subscriber of a topic; `latched`: of publishers alone that keep their last messages, and of these too."""
         ...
 
     def navigator(self, action: str) -> Navigator:

@@ -61,10 +61,10 @@ class RclpyMiddleware:
         """See `Middleware`."""
         return RclpyWriter(topic, self._node.create_publisher(_class_of(message), topic, self._reliable))
 
-    def reader(self, topic: str, message: type[M]) -> RclpyReader[M]:
+    def reader(self, topic: str, message: type[M], *, latched: bool = False) -> RclpyReader[M]:
         """See `Middleware`."""
         reader = RclpyReader(message)
-        quality = self._latched if topic in LATCHED else self._any
+        quality = self._latched if latched or topic in LATCHED else self._any
         self._node.create_subscription(_class_of(message), topic, reader.hear, quality)
         return reader
 

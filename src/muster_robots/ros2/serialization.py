@@ -17,7 +17,7 @@ from muster.mission.system.extras import needs_extra
 from muster_robots.ros2.description import ROS1, ROS2, Message, from_foreign, to_foreign
 
 CDR_HEADER = b"\x00\x01\x00\x00"
-_ARRAYS = {"uint8": np.uint8, "float32": np.float32, "float64": np.float64}
+_ARRAYS = {"uint8": np.uint8, "int8": np.int8, "float32": np.float32, "float64": np.float64}
 
 M = TypeVar("M", bound=Message)
 

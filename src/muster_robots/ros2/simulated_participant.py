@@ -1,7 +1,8 @@
 """A participant that behaves like a real robot: `python -m muster_robots.ros2.simulated_participant r_0 --at 0 0`.
 
 It moves exactly by its kinematics to `<robot>/goal_pose`, or as `<robot>/cmd_vel` says (until that stops for half a
-second); it says `<robot>/odom`, and once a second on `<robot>/muster` what it can do.
+second); it says `<robot>/odom`, and once a second on `<robot>/muster` what it can do. With `--maps` it maps obstacles
+with a lidar, and tells its map on `<robot>/map`.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import click
 from muster.motion.frames import enu_to_flu
 from muster.motion.grid import Floats
 from muster_robots.ros2.map_frame import MAP_FRAME
+from muster_robots.ros2.map_message_types import MapMetaData, OccupancyGrid
 from muster_robots.ros2.message_types import (
     Header,
     Odometry,
@@ -36,6 +38,7 @@ from muster_robots.ros2.names import ros_name
 from muster_robots.ros2.open_middleware import open_middleware
 from muster_robots.ros2.port import yaw_of
 from muster_robots.simulated_body import SimulatedBody
+from muster_robots.simulated_mapping import SimulatedMapping
 from muster_robots.simulated_program import Wanted, robot_options, run, wanted
 
 _SAYS_S = 1.0
@@ -43,6 +46,8 @@ _SAYS_S = 1.0
 
 class SimulatedRobot:
     """One robot on a middleware."""
+
+    _mapping: SimulatedMapping | None = None
 
     def __init__(self, it: Wanted, middleware: Middleware) -> None:
         topics = it.topics(ros_name(it.robot.id))
@@ -52,6 +57,9 @@ class SimulatedRobot:
         self._velocities = middleware.reader(f"{topics}/cmd_vel", Twist)
         self._poses = middleware.writer(f"{topics}/odom", Odometry)
         self._words = middleware.writer(f"{topics}/muster", String)
+        if it.maps is not None:
+            self._mapping = SimulatedMapping(it.maps, it.robot)
+            self._maps = middleware.writer(f"{topics}/map", OccupancyGrid)
         self._says, self._said_s = String(json.dumps(it.says)), -math.inf
 
     def run(self) -> None:
@@ -82,9 +90,18 @@ class SimulatedRobot:
         header = Header(stamp=Time.of(time.time()), frame_id=MAP_FRAME)
         pose = PoseWithCovariance(Pose(Point(*place), turn))
         self._poses.write(Odometry(header, self._frame, pose, TwistWithCovariance(moves)))
+        if self._mapping is not None and self._mapping.look(now, place, heading):
+            self._maps.write(_map_message(header, self._mapping))
         if now - self._said_s >= _SAYS_S:
             self._said_s = now
             self._words.write(self._says)
+
+
+def _map_message(header: Header, mapping: SimulatedMapping) -> OccupancyGrid:
+    (rows, columns), (x, y, yaw) = mapping.frame.shape, mapping.frame.origin
+    corner = Pose(Point(x, y, 0.0), Quaternion(0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)))
+    info = MapMetaData(header.stamp, mapping.frame.resolution_m, columns, rows, corner)
+    return OccupancyGrid(header, info, mapping.per_cent().tobytes())
 
 
 @click.command()

@@ -134,6 +134,7 @@ def carried_out(mission: Mission, *, explore: bool = False) -> Outcome:
     report = carry_out(mission, solve(mission, "greedy"), unknown=True, explore=explore, recorder=places)
     ground = report.ground
     assert ground is not None
+    assert ground.driven_m is not None
     steps = np.stack(places.steps)
     clearances = [
         float(world.clearance(steps[:, k, : mission.dimensions], robot.kind, robot.radius_m).min()) / robot.radius_m

@@ -17,8 +17,17 @@ from muster.state.event import KINDS
 from muster.state.robots import OUT
 from muster.state.run_events import PlanAdopted
 
-SCRIPT = files("muster_control.pages.live").joinpath("js", "mission_state.js").read_text(encoding="utf-8")
-MODULE = "data:text/javascript;base64," + b64encode(SCRIPT.encode()).decode()
+
+def module_of(package, *path, imported=("\0", "")):
+    """A script as an address that modules are imported from, with the name of a module in it replaced."""
+    script = files(package).joinpath(*path).read_text(encoding="utf-8").replace(*imported)
+    return "data:text/javascript;base64," + b64encode(script.encode()).decode()
+
+
+EXPLORED = module_of("muster.report.page", "modules", "explored.js")
+MODULE = module_of(
+    "muster_control.pages.live", "js", "mission_state.js", imported=("muster-record/explored.js", EXPLORED)
+)
 NOT_SHOWN = {
     *(
         "sets_out",

@@ -34,7 +34,7 @@ class Middleware:
     def now(self):
         return self.now_s
 
-    def reader(self, topic, _):
+    def reader(self, topic, _, latched=False):
         return self.heard.setdefault(topic, Heard())
 
     def writer(self, topic, _):

@@ -119,7 +119,8 @@ def _print_ground(ground: Report | None) -> None:
     ratio = f", {driven / known:.2f} times" if driven and known else ""
     frontiers = f", {counted(ground['frontiers'], 'frontier')} as tasks" if ground.get("frontiers") else ""
     click.echo(f"{'explored':<17} {number(ground.get('explored_m2'))} m2{frontiers}")
-    click.echo(f"{'ways':<17} {number(driven)} m, with the map {number(known)} m{ratio}")
+    if driven is not None:
+        click.echo(f"{'ways':<17} {number(driven)} m, with the map {number(known)} m{ratio}")
 
 
 def _print_orders(orders: Report | None) -> None:

@@ -134,22 +134,22 @@ class GroundReport:
     ----------
     explored_m2
         how large the ground is that they saw to be free.
-    driven_m, with_map_m
-        what robots drove from each place to the next at which they arrived, and the shortest ways there by the true
-        map.
     ways_closed
         how often an obstacle appeared in the way of a robot.
     frontiers, frontiers_seen
         how many frontiers became tasks, and how many of those no robot had to go to, mostly as others saw what lies
         behind; these are in no list of tasks.
+    driven_m, with_map_m
+        what robots drove from each place to the next at which they arrived, and the shortest ways there by the true
+        map; None of real robots, of whose ground nobody has the true map.
     """
 
     explored_m2: float
-    driven_m: float
-    with_map_m: float
     ways_closed: int
     frontiers: int
     frontiers_seen: int
+    driven_m: float | None = None
+    with_map_m: float | None = None
 
 
 @dataclass(frozen=True)

@@ -244,9 +244,11 @@ class RobotState:
         self._order_instead(now, [*marks, *self._waypoints[done:]], self.to_task + len(marks) - done)
         self.went_round = went_round
 
-    def go_other_ways(self, now: float, ways: Sequence[Sequence[Waypoint]]) -> None:
-        """Order it to pass what is left of its stops by other ways, one to each, the stop included."""
-        stops = self.stops_left
+    def go_other_ways(
+        self, now: float, ways: Sequence[Sequence[Waypoint]], stops: Sequence[Waypoint] | None = None
+    ) -> None:
+        """Order it to pass stops by other ways, one to each, the stop included: by default what is left of its own."""
+        stops = self.stops_left if stops is None else stops
         entry = self._waypoints[self.to_task - 1] if self.passed < self.to_task else None
         waypoints, to_task = list[Waypoint](), 0
         for stop, way in zip(stops, ways, strict=True):

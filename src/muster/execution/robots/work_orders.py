@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 from muster.execution.robots.robot_state import Activity, RobotState
-from muster.execution.robots.task_motion import Work, path_length, travel_s
+from muster.execution.robots.task_motion import MotionPlanner, Way, Work, path_length, place, travel_s, work_of
+from muster.mission.model import Task
+from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 from muster.state.task_ledger import Ledger
+
+AT_M = 0.2
+"""Metres from the place of a delivery within which a robot puts its load down there, wherever the task moves to."""
 
 
 def least_s(state: RobotState, start: Place, way: Sequence[Waypoint]) -> float:
@@ -51,6 +58,62 @@ def least_usage(state: RobotState, work: Work, there: Sequence[Waypoint], lasts_
     if state.in_time:
         return state.used + least_s(state, state.position, there) + lasts_s
     return state.used + path_length(state.position, there) + max(work.cost_m, work.way_m)
+
+
+def lead_elsewhere(
+    crew: Sequence[RobotState], before: Task, task: Task, plan_motion: MotionPlanner, way: Way, now: float
+) -> bool:
+    """Let robots that carry a load to a delivery bring it to where the task is by now.
+
+    Parameters
+    ----------
+    crew
+        the robots at work on the task.
+    before, task
+        the task where it was, and as it is by now: its pickup has not moved.
+
+    Returns
+    -------
+    whether they do; they go on as before if the task is no delivery, one of them puts its load down already, or there
+    is no way for one.
+    """
+    orders = [_led_elsewhere(state, before, task, plan_motion, way) for state in crew]
+    if not crew or any(order is None for order in orders):
+        return False
+    for state, order in zip(crew, orders, strict=True):
+        assert order is not None
+        work, stops, ways, home = order
+        state.work = work
+        state.home_usage, state.home_s = usage_home(state, work, home)
+        state.go_other_ways(now, ways, stops)
+        left_s = sum(
+            travel_s(state.times, start, there)
+            for start, there in zip([state.position, *(stop.position for stop in stops)], ways, strict=False)
+        )
+        state.work_s = now - state.begun_s + left_s + sum(stop.hold_s for stop in stops)
+    return True
+
+
+def _led_elsewhere(
+    state: RobotState, before: Task, task: Task, plan_motion: MotionPlanner, way: Way
+) -> tuple[Work, list[Waypoint], list[Sequence[Waypoint]], Sequence[Waypoint]] | None:
+    """Return the work on a delivery that has moved, what is left of its stops, the ways to these, and the way home."""
+    left, was_at = state.stops_left, place(before.position)
+    if task.action is None or task.action.pickup is None or was_at not in [stop.position for stop in left]:
+        return None
+    if left[0].position == was_at and math.dist(was_at, state.position) <= AT_M:
+        return None
+    work = work_of(task, state.robot, plan_motion, way, state.times)
+    if isinstance(work, Impossible):
+        return None
+    places = [point.position for point in work.waypoints if not point.via][-len(left) :]
+    ways = [way(state.robot, start, goal) for start, goal in pairwise([state.position, *places])]
+    home = () if state.home is None else way(state.robot, work.exit, state.home)
+    found = [there for there in ways if there is not None]
+    if len(found) < len(ways) or home is None:
+        return None
+    stops = [replace(stop, position=there) for stop, there in zip(left, places, strict=True)]
+    return work, stops, found, home
 
 
 def stop_work(crew: Mapping[str, RobotState], ledger: Ledger, task: str, now: float) -> tuple[str, ...]:

@@ -24,6 +24,7 @@ from muster.report.time_charts.level_lines import recorded_level
 from muster.report.time_charts.recorded_gantt import recorded_rows
 from muster.report.time_charts.time_marks import page_marks
 from muster.state import MissionState
+from muster.state.ground_events import GroundUnknown, MapGrows
 from muster.state.mission_state import OPEN
 from muster.state.reasons import is_no_loss, was_cancelled
 from muster.state.robots import OUT
@@ -61,6 +62,7 @@ def page_data(recording: Recording) -> dict[str, Any]:
         "nearest": _nearest(recording, tracks),
         "areas": _areas(recording.tasks),
         "map": _map(recording.mission.map, recording.image, course),
+        "explored": _explored(recording),
         "figures": _figures(recording),
         **page_marks(recording.tasks, recorded_rows(recording), recording.mission.starts_at),
     }
@@ -258,6 +260,15 @@ def _image(image: Grid) -> dict[str, Any]:
         "origin": list(image.origin),
         "runs": [0, *runs] if cells[0] else runs,
     }
+
+
+def _explored(recording: Recording) -> list[list[Any]]:
+    """How the map of robots that had none has grown: when, and the event's data; null where they begin without one."""
+    return [
+        [_thousandths(event.time_s), dict(event.data) if isinstance(event, MapGrows) else None]
+        for event in recording.events
+        if isinstance(event, GroundUnknown | MapGrows)
+    ]
 
 
 def _figures(recording: Recording) -> list[list[str]]:

@@ -9,6 +9,9 @@ const ROBOT_SCALE = Math.min(Math.max(Math.sqrt(MOST_NAMED_ROBOTS / robots.lengt
 const mapPicture = document.getElementById("map");
 let project = null; // metres to pixels: {x, y, scale}
 let trails = [];
+let exploredPart = null;
+let exploredMap = null; // that robots have built by the time that is shown
+let shownGrowth = -1;
 let routes = null;
 let shownPlan = -1;
 let robotMarks = [];
@@ -22,12 +25,14 @@ let zoneParts = []; // of zones
 function drawMap() {
   const [width, height] = fitted(mapPicture);
   project = projection(width, height);
+  exploredPart = svg("g");
+  [exploredMap, shownGrowth] = [null, -1];
   routes = svg("g");
   shownPlan = -1;
   zoneParts = [];
   stationMarks = stations.map(stationMark);
   taskPlaces = [];
-  mapPicture.append(...floorParts(), routes, ...stationMarks);
+  mapPicture.append(...floorParts(), exploredPart, routes, ...stationMarks);
   trails = robots.map(trail);
   taskMarks = tasks.map(taskMark);
   robotMarks = robots.map(robotMark);
@@ -97,8 +102,28 @@ function walls({ rows, columns, resolution, origin: [x, y, yaw], runs }) {
   });
   context.putImageData(pixels, 0, 0);
   const [c, s] = [Math.cos(yaw), Math.sin(yaw)].map((part) => part * resolution * project.scale);
-  const transform = `matrix(${c} ${-s} ${-s} ${-c} ${project.x(x)} ${project.y(y)})`;
-  return svg("image", { class: "wall", href: canvas.toDataURL(), width: columns, height: rows, transform });
+  return cellsPart("wall", canvas, [c, -s, -s, -c, project.x(x), project.y(y)]);
+}
+
+function cellsPart(name, canvas, transform) {
+  const { width, height } = canvas;
+  return svg("image", { class: name, href: canvas.toDataURL(), width, height, transform: `matrix(${transform.join(" ")})` });
+}
+
+// The map that robots have built at a time: events are applied in order, and from the first on where time goes back.
+function showExplored(now) {
+  const current = lastUntil(growths, now, (one) => one.at);
+  if (current === shownGrowth) return;
+  if (current < shownGrowth) [exploredMap, shownGrowth] = [null, -1];
+  for (const { grows } of growths.slice(shownGrowth + 1, current + 1)) exploredMap = grows && grownMap(exploredMap, grows);
+  shownGrowth = current;
+  const parts = exploredMap ? [cellsPart("explored", pictureOf(exploredMap, themeColors()), layOf(exploredMap, project))] : [];
+  exploredPart.replaceChildren(...parts);
+}
+
+function themeColors() {
+  const style = getComputedStyle(document.documentElement);
+  return { quiet: style.getPropertyValue("--quiet"), ink: style.getPropertyValue("--ink") };
 }
 
 function scaleBar(height) {
@@ -186,6 +211,7 @@ function robotMark(robot) {
 }
 
 function showMap(now) {
+  showExplored(now);
   showRoutes(now);
   const moment = Math.max(lastUntil(times, now), 0);
   trails.forEach(({ path, lengths }) => {

@@ -11,8 +11,17 @@ from muster.mission.errors import Finding, InputError
 from muster.report.page.data import page_data
 from muster.report.record import Recording
 
-_SCRIPTS = ("series.js", "names.js", "map.js", "time_marks.js", "charts.js", "panels.js", "player.js")
-"""In the order in which the page runs them."""
+_SCRIPTS = (
+    "series.js",
+    "names.js",
+    "modules/explored.js",
+    "map.js",
+    "time_marks.js",
+    "charts.js",
+    "panels.js",
+    "player.js",
+)
+"""The scripts in the order in which the page runs them; those in `modules` are ES modules that other pages import."""
 
 
 def write_page(path: str | Path, recording: Recording) -> None:
@@ -36,11 +45,16 @@ def page_text(recording: Recording) -> str:
     parts = {
         "TITLE": escape(recording.mission.name),
         "STYLE": _file("page.css"),
-        "SCRIPT": "\n".join(_file(name) for name in _SCRIPTS),
+        "SCRIPT": "\n".join(_script(name) for name in _SCRIPTS),
         "DATA": data.replace("<", "\\u003c"),  # so that no id can end the element that holds it
     }
     pieces = _file("page.html").split("@@")
     return "".join(parts.get(piece, piece) for piece in pieces)
+
+
+def _script(name: str) -> str:
+    """Return a script without the exports of a module, since all scripts of the page share one scope."""
+    return _file(name).replace("\nexport ", "\n")
 
 
 def _file(name: str) -> str:

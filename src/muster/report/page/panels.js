@@ -36,9 +36,18 @@ function fillKey() {
   const used = new Set(tasks.flatMap((task) => task.states.map(([, state]) => state)));
   const items = [...used].map((state) => {
     const mark = svg("g", { class: `task ${state.replace(" ", "-")}` }, ...taskShapes());
-    return html("li", {}, svg("svg", { viewBox: "-7 -7 14 14", "aria-hidden": "true" }, mark), `task ${state}`);
+    return keyItem(mark, `task ${state}`);
   });
+  if (growths.length) {
+    for (const [name, words] of [["unseen", "not seen"], ["obstacle", "obstacle that was seen"]]) {
+      items.push(keyItem(svg("rect", { class: name, x: -6, y: -6, width: 12, height: 12 }), words));
+    }
+  }
   document.getElementById("key").append(...items);
+}
+
+function keyItem(mark, words) {
+  return html("li", {}, svg("svg", { viewBox: "-7 -7 14 14", "aria-hidden": "true" }, mark), words);
 }
 
 function fillEvents() {

@@ -79,6 +79,7 @@ function start() {
   picturedAs(mapPicture, `Map with ${robots.length} robots and ${tasks.length} tasks`);
   fillPanels();
   drawAll();
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", drawAll);
   new ResizeObserver(drawAll).observe(document.querySelector("main"));
 }
 

@@ -29,6 +29,7 @@ const tasks = data.tasks.map((task) => ({
 }));
 const stations = data.stations.map((one) => ({ ...one, place: one.place.map((value) => value / 1000) }));
 const plans = data.plans.map((plan) => ({ ...plan, at: plan.at / 1000 }));
+const growths = data.explored.map(([at, grows]) => ({ at: at / 1000, grows }));
 const spans = data.spans.map(([robot, task, kind, from, until]) => ({
   robot, task, kind, from: from / 1000, until: until / 1000,
 }));

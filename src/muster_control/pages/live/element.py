@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Mapping
 from importlib import import_module
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,12 @@ ui.add_css(Path(__file__).with_name("live.css"), shared=True)
 _log = logging.getLogger("muster_control.pages")
 
 
-class RunView(Element, component="live.js", esm={"muster-live": "js"}, default_classes="muster-live-frame"):
+class RunView(
+    Element,
+    component="live.js",
+    esm={"muster-live": "js", "muster-record": str(files("muster.report.page") / "modules")},
+    default_classes="muster-live-frame",
+):
     """Map, robots, events and commands of one run.
 
     Parameters

@@ -6,9 +6,9 @@ import { readTheme, robotColor, SHAPES } from "muster-map/looks.js";
 import { listenToPointer } from "muster-map/pointer.js";
 import { Stage } from "muster-map/stage.js";
 import { told } from "muster-map/words.js";
+import { layOf, pictureOf } from "muster-record/explored.js";
 
 import { html } from "./elements.js";
-import { ExploredGround } from "./explored.js";
 import { moveWords } from "./words.js";
 
 const PULSE_MS = 1200;
@@ -16,7 +16,7 @@ const FADE_MS = 2500; // at the end of a highlight
 const RING = 11; // pixels
 
 class RunStage extends Stage {
-  explored = new ExploredGround();
+  explored = {}; // the map that robots have built: {of, theme, picture}
 
   movable(one) {
     return this.mayMove(one);
@@ -58,11 +58,24 @@ class RunStage extends Stage {
   }
 
   paintTop(context, now) {
-    this.explored.draw(context, this.view, this.team.state.explored);
+    this.paintExplored(context, this.team.state.explored);
     const only = this.chosen?.what === "robot" ? this.chosen.id : null;
     drawRoutes(context, this.view, this.ways(), this.places, this.theme, only);
     super.paintTop(context, now);
     for (const [task, move] of this.team.moved) this.paintMove(context, task, move, now);
+  }
+
+  paintExplored(context, map) {
+    if (!map) return;
+    const { theme, view } = this;
+    if (this.explored.of !== map || this.explored.theme !== theme) {
+      this.explored = { of: map, theme, picture: pictureOf(map, theme) };
+    }
+    context.save();
+    context.imageSmoothingEnabled = false;
+    context.transform(...layOf(map, view));
+    context.drawImage(this.explored.picture, 0, 0);
+    context.restore();
   }
 
   ways() {

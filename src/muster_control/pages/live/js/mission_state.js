@@ -1,6 +1,8 @@
 // The state of a mission under way, as far as pages show it: the fold of its events, as `muster.state` folds them in
 // Python. A test applies the same events to both, and compares after each. Metres, seconds.
 
+import { grownMap } from "muster-record/explored.js";
+
 export class MissionState {
   constructor(mission) {
     this.mission = mission;
@@ -17,7 +19,7 @@ export class MissionState {
     this.lying = new Map(); // task -> {load, robot}: what it took on lies where its robot failed
     this.doneTwice = new Map(); // task -> the robots that could not hear each other
     this.forgotten = { done: 0, lost: 0, cancelled: 0 };
-    this.explored = null; // {cell, origin: [x, y, yaw], rows: what cells are, the lowest first, area, grown: how often}
+    this.explored = null; // the map of robots that had none, as `grownMap` gives it
     this.replanned = 0;
     this.ended = null;
     this.ignored = new Set(); // rules that do not hold
@@ -202,10 +204,10 @@ const CHANGES = {
     state.tasks.get(task).cancelled = true;
     state.tasks.get(task).giveUp();
   },
-  move_task(state, { task, position }) {
+  move_task(state, { task, position, under_way: underWay = false }) {
     if (!state.tasks.has(task)) return;
     state.tasks.get(task).place = three(position);
-    state.tasks.get(task).giveUp();
+    if (!underWay) state.tasks.get(task).giveUp();
     state.refusals.delete(task);
   },
   delay_task: (state, { task, by_s: by }) => state.delays.set(task, (state.delays.get(task) ?? 0) + by),
@@ -249,12 +251,7 @@ const CHANGES = {
     state.openWays();
   },
   ground_unknown(state) { state.explored = null; },
-  map_grows(state, { cell_m: cell, origin, size: [height, width], runs = [], explored_m2: area = 0 }) {
-    const rows = () => Array.from({ length: height }, () => new Array(width).fill(0));
-    state.explored ??= { cell, origin, rows: rows(), grown: 0 };
-    for (const [row, first, count, value] of runs) state.explored.rows[row].fill(value, first, first + count);
-    Object.assign(state.explored, { area, grown: state.explored.grown + 1 });
-  },
+  map_grows(state, data) { state.explored = grownMap(state.explored, data); },
   mission_begins(state, { places = {} }) {
     for (const [robot, place] of Object.entries(places)) state.robots.get(robot).home = three(place.slice(0, -1));
   },
