@@ -22,7 +22,7 @@ from muster.execution import (
     way_of,
 )
 from muster.execution.fleet import Fleet, has_simulated_time, is_paused, reason_of
-from muster.mission.errors import NetworkError
+from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.supported_features import require_supported
@@ -31,6 +31,8 @@ from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import RobotPort
 from muster.running.fleet_clock import FleetWithMissionClock, clock_of, start_of
 from muster.running.fleet_in_traffic import FleetInTraffic
+from muster.running.fleet_registry import FLEETS
+from muster.running.fleet_type import HOLDS
 from muster.running.observed_run import ObservedRun
 from muster.running.replanning import planning_of
 from muster.running.run_request import OPEN_FLEET, RunRequest
@@ -38,6 +40,7 @@ from muster.running.traffic_choice import manager_for
 from muster.running.wall_time import MissionStart, has_time_limits, require_time_left
 from muster.state import MissionState
 from muster.state.run_events import MissionBegins
+from muster.traffic.names import FREE
 from muster.verification.required import require_geometry, require_open_ways
 
 if TYPE_CHECKING:
@@ -148,10 +151,12 @@ class Live:
             begin_s = max(begin_s, state.now_s)
         require_supported(mission)
         require_geometry(mission, "a run of real robots")
+        self._kind = FLEETS.get(request.world)
+        if self._kind is not None:
+            self._kind.require_able(mission, resumes=state is not None)
         robot_paths = RobotPaths.of(mission) if mission.has_paths else None
-        manager = manager_for(
-            request.traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world
-        )
+        traffic = FREE if self._lacks(HOLDS) else request.traffic
+        manager = manager_for(traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world)
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
         self._fleet = FleetWithMissionClock(managed, begin_s, None if has_simulated_time(fleet) else clock)
         self._robots, self._recorder, self._stood = fleet, recorder, False
@@ -233,7 +238,15 @@ class Live:
         return report
 
     def pause(self) -> None:
-        """Robots stop where they are until `resume`; the mission's clock goes on."""
+        """Robots stop where they are until `resume`; the mission's clock goes on.
+
+        Raises
+        ------
+        ParameterError
+            if the fleet declares that its robots do not stop when they are told to.
+        """
+        if why := self._lacks(HOLDS):
+            raise ParameterError(f"pause: not possible; expected a run whose robots hold: {why}")
         self.executor.pause()
 
     def resume(self) -> None:
@@ -246,6 +259,10 @@ class Live:
         self._fleet.stop()
         if self._standing is not None and self._standing.improver is not None:
             self._standing.improver.close()
+
+    def _lacks(self, ability: str) -> str:
+        """Return why what needs an ability is refused; empty for a fleet that is open: it is not known by name."""
+        return "" if self._kind is None else self._kind.lacks(ability)
 
     def _say_start(self, mission: Mission, begin_s: float) -> None:
         """Emit when the mission starts; begun late, what is left in time is planned again."""
