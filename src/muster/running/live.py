@@ -156,7 +156,8 @@ class Live:
             self._kind.require_able(mission, resumes=state is not None)
         robot_paths = RobotPaths.of(mission) if mission.has_paths else None
         traffic = FREE if self._lacks(HOLDS) else request.traffic
-        manager = manager_for(traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world)
+        world = None if robot_paths is None else robot_paths.world
+        manager = manager_for(traffic, mission, seed=seed, world=world, real=True)
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
         self._fleet = FleetWithMissionClock(managed, begin_s, None if has_simulated_time(fleet) else clock)
         self._robots, self._recorder, self._stood = fleet, recorder, False
