@@ -77,3 +77,11 @@ def test_where_traffic_is_reserved_robots_are_sent_on_sparingly(scene, count):
     assert not fleet.world.contacts
     assert not fleet.repeated
     assert len(fleet.orders) <= count * report.mission_time_s / 2  # it was four times as many
+
+
+def test_a_robot_that_waits_for_another_is_not_sent_again_to_where_it_stands():
+    there = muster.load("11T-2R")
+    fleet = CountingFleet(there)
+    report = muster.carry_out(there, muster.solve(there, iterations=300), fleet, traffic="reserve")
+    assert len(report.tasks_done) == len(there.tasks)
+    assert not fleet.repeated

@@ -139,10 +139,8 @@ class ManagedPort:
 
     def has_come(self, way: Sequence[Waypoint]) -> bool:
         """Whether a way leads only to where the robot has come by its last order, which had nothing to do there."""
-        sent = self._sent
-        return (
-            bool(sent) and not self._numbers and self._sent_passed >= len(sent or ()) and (sent or ())[-1:] == (*way,)
-        )
+        sent = self._sent or ()
+        return bool(sent) and not self._numbers and self._sent_passed >= len(sent) and sent[-1:] == tuple(way)
 
     def added_m(self, way: Sequence[Waypoint]) -> float | None:
         """Return by how many metres a way leads farther than what is left of the last order; None if it differs."""
