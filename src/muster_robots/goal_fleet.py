@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Protocol, Self
 
 from muster.mission.model import Event, Mission, Robot
-from muster.mission.system.clock import Clock, SystemClock
+from muster.mission.system.clock import TIME_ROUNDING_S, Clock, SystemClock
 from muster.motion.port import Place, Telemetry, Waypoint
 from muster.running.live import wait_for_robots
 from muster_robots.follower import Follower
@@ -137,8 +137,9 @@ class GoalFleet:
         while True:
             self._deliver()
             self._wait(max(0.0, min(until_s, self._polled_s + _POLL_S) - self.time_s))
-            passed = self.time_s >= self._polled_s + _POLL_S and self._poll()
-            if passed or self.time_s >= until_s:
+            now = self.time_s + TIME_ROUNDING_S
+            passed = now >= self._polled_s + _POLL_S and self._poll()
+            if passed or now >= until_s:
                 self._deliver()
                 return ()
 

@@ -14,6 +14,7 @@ from typing import Any
 from muster.execution.fleet import Fleet, reason_of
 from muster.mission.errors import MusterError
 from muster.mission.model import Mission
+from muster.mission.system.clock import TIME_ROUNDING_S
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.port import Place, Telemetry, Waypoint
 from muster.running.fleet_type import FleetType
@@ -158,7 +159,7 @@ class Trial:
         """Let time go by until something holds; returns whether it does before a limit in seconds of the fleet."""
         end_s, wall_s = self.fleet.time_s + limit_s, self.stand.watch() + 2 * limit_s + 10
         while not until():
-            if self.fleet.time_s >= end_s or self.stand.watch() >= wall_s:
+            if self.fleet.time_s + TIME_ROUNDING_S >= end_s or self.stand.watch() >= wall_s:
                 return False
             self.advance(min(end_s, self.fleet.time_s + _STEP_S))
         return True
