@@ -10,7 +10,7 @@ from typing import Any
 from muster.execution.fleet import Fleet
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.running.fleet_registry import AIR, Opened, declares
+from muster.running.fleet_type import AIR, BATTERY, CHARGES, GROUND, HOLDS, JOINS, RESUMES, RETURNS, FleetType, Opened
 from muster.running.live import wait_for_robots
 from muster_robots.claims import mavlink_claims, ros1_claims, ros2_claims
 from muster_robots.fleet_settings import MavlinkSettings, Ros1Settings, Ros2Settings
@@ -20,7 +20,6 @@ _ANYWHERE_M = 1e6
 """After a crash drones are where they are, in the air maybe."""
 
 
-@declares(settings=Ros1Settings, claims=ros1_claims, require_installed=require_rospy)
 def open_ros1(mission: Mission, settings: Ros1Settings, halt: threading.Event, _again: bool) -> Opened:
     from muster_robots.ros1.fleet import Ros1Fleet
     from muster_robots.ros1.node import become_node
@@ -29,7 +28,6 @@ def open_ros1(mission: Mission, settings: Ros1Settings, halt: threading.Event, _
     return _heard(Ros1Fleet(mission, settings), settings.wait_s, halt), _nothing
 
 
-@declares(settings=Ros2Settings, claims=ros2_claims)
 def open_ros2(mission: Mission, settings: Ros2Settings, halt: threading.Event, _again: bool) -> Opened:
     return _heard(ros2_fleet(mission, settings), settings.wait_s, halt, NEEDED[settings.give]), _nothing
 
@@ -55,7 +53,6 @@ def ros2_fleet(mission: Mission, settings: Ros2Settings, **more: Any) -> Any:
     )
 
 
-@declares(settings=MavlinkSettings, claims=mavlink_claims, abilities=(AIR,))
 def open_mavlink(mission: Mission, settings: MavlinkSettings, _halt: threading.Event, again: bool) -> Opened:
     from muster_robots.mavlink import MavlinkFleet
 
@@ -82,3 +79,23 @@ def _heard(fleet: Any, wait_s: float, halt: threading.Event, needed: str = "its 
 
 def _nothing() -> None:
     """They stay where they are."""
+
+
+_ROS = (GROUND, AIR, JOINS, HOLDS, RETURNS, CHARGES, RESUMES)
+
+ROS1 = FleetType(
+    name="ros1",
+    open=open_ros1,
+    abilities=_ROS,
+    settings=Ros1Settings,
+    claims=ros1_claims,
+    require_installed=require_rospy,
+)
+ROS2 = FleetType(name="ros2", open=open_ros2, abilities=_ROS, settings=Ros2Settings, claims=ros2_claims)
+MAVLINK = FleetType(
+    name="mavlink",
+    open=open_mavlink,
+    abilities=(AIR, HOLDS, RETURNS, BATTERY, RESUMES),
+    settings=MavlinkSettings,
+    claims=mavlink_claims,
+)

@@ -82,7 +82,7 @@ ALLOWED = {
 OTHER_MEANING = {
     "__init__.py": ("load", "`muster.load` reads a mission"),
     "motion/maps/images.py": ("load", "pixels of a picture are loaded"),
-    "running/fleet_registry.py": ("team", "abilities of fleets"),
+    "running/fleet_type.py": ("team battery", "abilities of fleets"),
     "running/worlds.py": ("team", "abilities of worlds"),
     "simulation/declaration.py": ("team", "abilities of worlds"),
     "simulation/kinematic_world.py": ("team", "abilities of a world"),

@@ -16,12 +16,14 @@ from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.plan import Plan, Route
 from muster.mission.reading.plan_reader import PLAN_READERS
 from muster.mission.reading.travel_csv import TRAVEL_TABLES
+from muster.mission.records import Settings, record, spec
 from muster.mission.site import TravelTable
+from muster.mission.value_types import Whole
 from muster.planning import export_formats
 from muster.planning.export_formats import FORMATS, Files
 from muster.planning.mission_readers import MISSION_READERS, MissionReader, Noted, converted_suffixes
-from muster.running import fleet_registry
 from muster.running.fleet_registry import FLEETS, fleet_ready
+from muster.running.fleet_type import FleetType
 from muster.running.observed_run import ObservedRun
 from muster.running.run_outputs import RUN_OUTPUTS, BegunOutput
 from muster.running.simulate import simulated
@@ -57,7 +59,7 @@ def test_what_ships_is_there_in_order():
     assert list(FORMATS) == ["qgc", "geojson", "gpx", "kml", "csv", "sol", "sheets", "overview", "xlsx", "ics"]
     assert list(OTHER_RECORDINGS) == ["ros"]
     assert world_named("kinematic") is KinematicWorld
-    assert all(callable(FLEETS[name]) for name in FLEETS)
+    assert all(FLEETS[name].name == name for name in FLEETS)
     assert all(callable(FORMATS[name]) for name in FORMATS)
     assert OTHER_RECORDINGS["ros"].is_recording(Path("nowhere.bag")) is False
 
@@ -198,6 +200,8 @@ def test_an_output_of_another_package_has_options_and_receives_the_run(added, mi
 def test_what_is_no_output_is_refused():
     with pytest.raises(ParameterError, match="no options; expected what"):
         RUN_OUTPUTS.add("three", 3)
+    with pytest.raises(ParameterError, match=r"fleet three: it is a int; expected a muster.*FleetType$"):
+        FLEETS.add("three", 3)
 
 
 def test_an_unknown_world_is_refused_with_the_near_match(capsys):
@@ -208,12 +212,25 @@ def test_an_unknown_world_is_refused_with_the_near_match(capsys):
         new_request("phisics", (), {})
 
 
+@record
+class BargeSettings(Settings):
+    """Where barges are."""
+
+    port: int = spec(Whole(), "number of their port")
+
+
 def test_a_fleet_is_opened_with_the_settings_of_the_run(added, mission):
     opened = []
-    added(FLEETS, "barges", lambda *given: opened.append(given) or ("fleet", "at end"))
+    barges = FleetType(
+        name="barges",
+        open=lambda *given: opened.append(given) or ("fleet", "at end"),
+        abilities=("ground", "resumes"),
+        settings=BargeSettings,
+    )
+    added(FLEETS, "barges", barges)
     halt = threading.Event()
     assert fleet_ready("barges", mission, {"port": 3}, halt, again=True) == ("fleet", "at end")
-    assert opened == [(mission, {"port": 3}, halt, True)]
+    assert opened == [(mission, BargeSettings(port=3), halt, True)]
     new_request("barges", ("barges",), {"port": 3})
     with pytest.raises(ParameterError, match="world: barges; expected kinematic, physics"):
         new_request("barges", (), {})
@@ -225,7 +242,8 @@ def test_what_a_fleet_needs_is_asked_for_before_it_is_opened_or_served(added, mi
     def lacks():
         raise MissingExtraError("barges", "fleet barges")
 
-    added(FLEETS, "barges", fleet_registry.declares(require_installed=lacks)(lambda *given: opened.append(given)))
+    how = {"open": lambda *given: opened.append(given), "abilities": ("ground",), "require_installed": lacks}
+    added(FLEETS, "barges", FleetType(name="barges", **how))
     with pytest.raises(MissingExtraError, match="fleet barges"):
         fleet_ready("barges", mission, {}, threading.Event(), again=False)
     assert run(["serve", "--bridge", "barges"]) == 2
@@ -327,6 +345,6 @@ def test_a_travel_table_of_another_program_is_read(added, tmp_path):
 
 
 def test_what_cannot_be_called_is_refused():
-    for registry in (WORLDS, FLEETS, FORMATS):
+    for registry in (WORLDS, FORMATS):
         with pytest.raises(ParameterError, match=r"it is a int; expected a (class or )?function"):
             registry.add("three", 3)

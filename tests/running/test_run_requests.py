@@ -20,7 +20,8 @@ from muster.mission.records import Settings, record, spec, specified
 from muster.mission.value_types import Number, Text
 from muster.mission.yaml_writer import yaml_text
 from muster.planning.options import PlanningOptions
-from muster.running.fleet_registry import FLEETS, declares
+from muster.running.fleet_registry import FLEETS
+from muster.running.fleet_type import FleetType
 from muster.running.observed_run import ObservedRun
 from muster.running.run_request import BESIDE_SETTINGS, RunRequest
 from muster_control.runs.run_settings import new_request
@@ -308,12 +309,14 @@ def acme():
         claimed.append(settings)
         return [f"acme at {settings.url}"]
 
-    @declares(settings=AcmeSettings, claims=claims, abilities=("ground",))
     def open_acme(mission, settings, halt, again):
         opened.append(settings)
         return WorldAsFleet(mission), lambda: opened.append("end")
 
-    FLEETS.add("acme", open_acme)
+    abilities = ("ground", "holds", "returns", "resumes")
+    FLEETS.add(
+        "acme", FleetType(name="acme", open=open_acme, abilities=abilities, settings=AcmeSettings, claims=claims)
+    )
     yield opened, claimed
     FLEETS.remove("acme")
 

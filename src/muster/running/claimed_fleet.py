@@ -8,7 +8,8 @@ from contextlib import closing, contextmanager
 
 from muster.mission.model import Mission
 from muster.running.claim_locks import robots_claimed
-from muster.running.fleet_registry import Opened, fleet_ready
+from muster.running.fleet_registry import fleet_ready
+from muster.running.fleet_type import Opened
 from muster.running.robot_claims import claims_of_request
 from muster.running.run_request import RunRequest
 

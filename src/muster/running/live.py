@@ -32,6 +32,8 @@ from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import RobotPort
 from muster.running.fleet_clock import FleetWithMissionClock, clock_of, start_of
 from muster.running.fleet_in_traffic import FleetInTraffic
+from muster.running.fleet_registry import FLEETS
+from muster.running.fleet_type import HOLDS
 from muster.running.mapped_ground import mapped_ground_for
 from muster.running.observed_run import ObservedRun
 from muster.running.replanning import planning_of
@@ -163,14 +165,14 @@ class Live:
             begin_s = max(begin_s, state.now_s)
         require_supported(mission)
         require_geometry(mission, "a run of real robots")
+        self._kind = FLEETS.get(request.world)
+        if self._kind is not None:
+            self._kind.require_able(mission, resumes=state is not None)
         known_paths = RobotPaths.of(mission) if ground is None and mission.has_paths else None
         robot_paths = known_paths if ground is None else ground.paths
-        manager = manager_for(
-            request.traffic if ground is None else FREE,
-            mission,
-            seed=seed,
-            world=None if robot_paths is None else robot_paths.world,
-        )
+        traffic = request.traffic if ground is None and not self._lacks(HOLDS) else FREE
+        world = None if robot_paths is None else robot_paths.world
+        manager = manager_for(traffic, mission, seed=seed, world=world, real=True)
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
         self._fleet = FleetWithMissionClock(managed, begin_s, None if has_simulated_time(fleet) else clock)
         self._robots, self._recorder, self._stood = fleet, recorder, False
@@ -257,7 +259,15 @@ class Live:
         return report
 
     def pause(self) -> None:
-        """Robots stop where they are until `resume`; the mission's clock goes on."""
+        """Robots stop where they are until `resume`; the mission's clock goes on.
+
+        Raises
+        ------
+        ParameterError
+            if the fleet declares that its robots do not stop when they are told to.
+        """
+        if why := self._lacks(HOLDS):
+            raise ParameterError(f"pause: not possible; expected a run whose robots hold: {why}")
         self.executor.pause()
 
     def resume(self) -> None:
@@ -270,6 +280,10 @@ class Live:
         self._fleet.stop()
         if self._standing is not None and self._standing.improver is not None:
             self._standing.improver.close()
+
+    def _lacks(self, ability: str) -> str:
+        """Return why what needs an ability is refused; empty for a fleet that is open: it is not known by name."""
+        return "" if self._kind is None else self._kind.lacks(ability)
 
     def _say_start(self, mission: Mission, begin_s: float) -> None:
         """Emit when the mission starts; begun late, what is left in time is planned again."""

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from muster.mission.errors import MusterError, PluginError
 from muster.mission.value_types import shown
-from muster.running.fleet_registry import FLEETS, Claims, OpenFleet, declares
+from muster.running.fleet_registry import FLEETS
 from muster.running.run_request import RunRequest
 from muster.running.worlds import WORLDS
-
-
-def claims(of: Claims) -> Callable[[OpenFleet], OpenFleet]:
-    """Declare what runs with a fleet claim, and nothing else; see `fleet_registry.declares`."""
-    return declares(claims=of)
 
 
 def claims_of_request(request: RunRequest) -> frozenset[str]:
@@ -28,7 +23,7 @@ def claims_of_request(request: RunRequest) -> frozenset[str]:
     world = request.world
     if world in WORLDS:
         return frozenset()
-    of = getattr(FLEETS.named(world), "claims", None)
+    of = FLEETS.named(world).claims
     if of is None:
         return frozenset({f"fleet {world}"})
     try:

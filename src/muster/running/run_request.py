@@ -21,7 +21,8 @@ from muster.motion.avoidance_names import AUTO, AVOIDANCE
 from muster.motion.laws import LAWS, PROFILE, TRAJECTORY
 from muster.motion.noise import CALM, NO_NOISE, Noise, Wind
 from muster.planning.options import LARGEST_SEED, PlanningOptions
-from muster.running.fleet_registry import FLEETS, checked_settings, setting_names, settings_class
+from muster.running.fleet_registry import FLEETS
+from muster.running.fleet_type import HOLDS
 from muster.running.request_kinds import ByRobot, FleetSettings, Orders, Replanning, Rules, Sensors
 from muster.running.wall_time import STARTS
 from muster.running.worlds import WORLDS
@@ -192,10 +193,9 @@ class RunRequest(Settings):
         """
         own: Mapping[str, Any] | None = None
         if world in FLEETS:
-            declared = setting_names(world)
-            if settings_class(world) is not None:
-                require_known(settings, (*declared, *SETTING_NAMES))
-            own = {name: value for name, value in settings.items() if name in declared or name not in SETTING_NAMES}
+            declared = FLEETS[world].setting_names
+            require_known(settings, (*declared, *SETTING_NAMES))
+            own = {name: value for name, value in settings.items() if name in declared}
         rest = {name: value for name, value in settings.items() if name not in (own or ())}
         for name in BESIDE_SETTINGS:
             if name in rest:
@@ -238,7 +238,7 @@ class RunRequest(Settings):
         """Read the settings of a fleet as it declares them."""
         if values["world"] not in FLEETS:
             return {}
-        return {"settings": checked_settings(values["world"], values["settings"] or {})}
+        return {"settings": FLEETS[values["world"]].checked_settings(values["settings"] or {})}
 
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:
@@ -251,6 +251,8 @@ class RunRequest(Settings):
             yield Fault(("traffic",), RESERVE, "free: ways are not known beforehand")
         if values["unknown"] and values["law"] == TRAJECTORY:
             yield Fault(("law",), TRAJECTORY, "profile or thesis: trajectories are rounded by the map")
+        if values["traffic"] == RESERVE and values["world"] in FLEETS and (why := FLEETS[values["world"]].lacks(HOLDS)):
+            yield Fault(("traffic",), RESERVE, f"free: {why}")
         real = values["world"] not in WORLDS
         what, other = ("real robots", SIMULATED) if real else ("a simulated world", REAL)
         for f in specified(RunRequest):

@@ -25,6 +25,7 @@ def manager_for(
     law: str = PROFILE,
     exact: bool = False,
     world: World | None = None,
+    real: bool = False,
 ) -> TrafficManager | None:
     """The manager of a run's traffic; None where robots pass each other as they meet.
 
@@ -34,6 +35,8 @@ def manager_for(
     ----------
     exact
         whether robots drive exactly as told, and know where they are.
+    real
+        whether they are real: each order costs them time.
     world
         of the mission, where it is at hand.
 
@@ -45,4 +48,4 @@ def manager_for(
     if law != PROFILE and traffic == RESERVE:
         raise ParameterError(f"traffic: {traffic}; expected free: by law {law} robots leave straight ways")
     chosen = of_run(traffic, avoidance=avoidance, law=law)
-    return manager_named(chosen, mission, seed, world=world, margin_m=MARGIN_M if exact else LOOSE_MARGIN_M)
+    return manager_named(chosen, mission, seed, world=world, margin_m=MARGIN_M if exact else LOOSE_MARGIN_M, real=real)

@@ -7,26 +7,34 @@ from muster.motion.map_world import World
 from muster.traffic.blockages.closed_rings import can_close_out
 from muster.traffic.manager import TrafficManager
 from muster.traffic.mission_roadmap import MissionRoadmap
-from muster.traffic.names import AUTO, RESERVE, may_reserve
-from muster.traffic.reservation.reserved import ReservedTraffic
+from muster.traffic.names import AUTO, RESERVE, drives, may_reserve
+from muster.traffic.reservation.reserved import AHEAD_M, AHEAD_S, ReservedTraffic
 from muster.traffic.roadmaps.given_lanes import limited_lanes
 from muster.traffic.roadmaps.roadmap import MARGIN_M
 
 
 def manager_named(
-    name: str, mission: Mission, seed: int = 0, *, world: World | None = None, margin_m: float = MARGIN_M
+    name: str,
+    mission: Mission,
+    seed: int = 0,
+    *,
+    world: World | None = None,
+    margin_m: float = MARGIN_M,
+    real: bool = False,
 ) -> TrafficManager | None:
     """The manager of a mission's traffic; None where robots pass each other as they meet.
 
     Parameters and errors are those of `shared_roadmap`. With `auto` traffic is by reservation also where robots at rest
-    can close others out of their ends.
+    can close others out of their ends. `real` robots get as few orders as possible (`ReservedTraffic.sparing`).
     """
     closes_out = name == AUTO and can_close_out(mission)
     shared = _shared_roadmap(name, mission, world, margin_m, even_if_wide=closes_out)
     if shared is None:
         return None
     lanes = [] if mission.driven_lanes is None else limited_lanes(mission.driven_lanes)
-    return ReservedTraffic(shared.plan(seed), margin_m=margin_m, lanes=lanes)
+    fastest_mps = max(robot.speed_mps for robot in mission.all_robots if drives(robot))
+    ahead_m = max(AHEAD_M, AHEAD_S * fastest_mps) if real else AHEAD_M
+    return ReservedTraffic(shared.plan(seed), margin_m=margin_m, lanes=lanes, ahead_m=ahead_m, sparing=real)
 
 
 def shared_roadmap(name: str, mission: Mission) -> MissionRoadmap | None:

@@ -190,7 +190,7 @@ def _known_bridges(_: click.Context, __: click.Parameter, names: tuple[str, ...]
 
 def _require_usable(settings: Settings) -> None:
     """Refuse options that exclude each other, before anything is opened."""
-    from muster.running.fleet_registry import require_installed
+    from muster.running.fleet_registry import FLEETS
     from muster_control.security.serving_rules import require_safe
     from muster_control.serving import require_certificate
 
@@ -199,7 +199,7 @@ def _require_usable(settings: Settings) -> None:
         require_certificate(settings.certificate, settings.key)
     for bridge in settings.bridges:
         with suppress(PluginError):  # a run with it is refused; the others go on
-            require_installed(bridge)
+            FLEETS.named(bridge).require_installed()
     if settings.tiles is not None and not settings.tiles.is_dir():
         raise ParameterError(f"--tiles {settings.tiles}: no folder; expected one with Z/X/Y.png in it")
 

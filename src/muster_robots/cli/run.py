@@ -7,7 +7,7 @@ import click
 from muster.cli.options.common import MissionFile, mission_argument
 from muster.mission.records import key_of, required, specified
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts
-from muster.running.fleet_registry import FLEETS, settings_class
+from muster.running.fleet_registry import FLEETS
 from muster_robots.cli.real_robots import (
     RealRunOptions,
     carried_out_from_here,
@@ -23,12 +23,12 @@ def _list(context: click.Context, _: click.Parameter, asked: bool) -> None:
     from muster.cli.tables.table import print_table
 
     rows = []
-    for name in FLEETS.usable():
-        declared = settings_class(name)
+    for name, fleet in FLEETS.usable().items():
+        rows.append((name, "", "", f"can: {', '.join(fleet.abilities)}"))
         rows += [
             (name, key_of(f), "required" if required(f) else f"{f.default}", f.metadata["doc"])
-            for f in (() if declared is None else specified(declared))
-        ] or [(name, "-", "-", "any settings, which the fleet checks itself")]
+            for f in specified(fleet.settings)
+        ]
     print_table(("fleet", "setting", "default", "what it is"), rows)
     context.exit()
 
@@ -48,7 +48,7 @@ def _list(context: click.Context, _: click.Parameter, asked: bool) -> None:
     is_eager=True,
     expose_value=False,
     callback=_list,
-    help="List the fleets and their settings.",
+    help="List the fleets, what they can do, and their settings.",
 )
 @real_options()
 def command(mission: MissionFile, options: RealRunOptions) -> int:

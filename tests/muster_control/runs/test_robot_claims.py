@@ -9,9 +9,12 @@ from tests.muster_control.runs.store import ADA, planned, settings_of
 
 import muster
 from muster.mission.errors import MusterError, ParameterError, PluginError
+from muster.mission.records import Settings, record, spec
+from muster.mission.value_types import Text
 from muster.running.claim_locks import robots_claimed
 from muster.running.fleet_registry import FLEETS
-from muster.running.robot_claims import claims, claims_as_far_as_known, claims_of
+from muster.running.fleet_type import FleetType, NoSettings
+from muster.running.robot_claims import claims_as_far_as_known, claims_of
 from muster_control.contract import ConflictError
 from muster_control.services.runs import Runs
 
@@ -93,13 +96,21 @@ def open_acme(mission, settings, halt, again):
     raise AssertionError("no fleet is opened in the process of the server")
 
 
+@record
+class SiteSettings(Settings):
+    """Where the robots of Acme are."""
+
+    site: str = spec(Text(), "the site", default="a")
+
+
 @pytest.fixture
 def fleets():
     """Makes fleets of another package known."""
     names = []
 
-    def add(name, opens):
-        FLEETS.add(name, opens)
+    def add(name, claims=None, settings=SiteSettings):
+        fleet = FleetType(name=name, open=open_acme, abilities=("ground",), settings=settings, claims=claims)
+        FLEETS.add(name, fleet)
         names.append(name)
 
     yield add
@@ -108,25 +119,25 @@ def fleets():
 
 
 def sites(settings):
-    return [f"site {settings['site']}"]
+    return [f"site {settings.site}"]
 
 
 def no_texts(settings):
-    return [settings["site"], 7]
+    return [settings.site, 7]
 
 
 def test_a_fleet_of_another_package_is_claimed_as_a_whole_unless_it_says_what_a_run_claims(fleets):
-    fleets("acme", open_acme)
-    fleets("sites", claims(sites)(lambda *_: open_acme(*_)))
+    fleets("acme")
+    fleets("sites", sites)
     assert claims_of("acme", {}) == claims_of("acme", {"site": "a"}) == {"fleet acme"}
     assert claims_of("sites", {"site": "a"}) == {"site a"}
     assert not claims_of("sites", {"site": "a"}) & claims_of("sites", {"site": "b"})
 
 
 def test_a_declaration_that_is_wrong_is_one_line(fleets):
-    fleets("sites", claims(sites)(lambda *_: open_acme(*_)))
-    fleets("numbers", claims(no_texts)(lambda *_: open_acme(*_)))
-    with pytest.raises(PluginError, match=r"^fleet sites: its claims: KeyError: 'site'$"):
+    fleets("sites", sites, NoSettings)
+    fleets("numbers", no_texts)
+    with pytest.raises(PluginError, match=r"^fleet sites: its claims: AttributeError: .*'site'$"):
         claims_of("sites", {})
     with pytest.raises(PluginError, match=r"^fleet numbers: its claims: .*; expected texts$"):
         claims_of("numbers", {"site": "a"})
@@ -136,7 +147,7 @@ def test_a_declaration_that_is_wrong_is_one_line(fleets):
 
 @pytest.mark.parametrize("declares", [False, True])
 def test_two_runs_never_command_the_robots_of_another_packages_fleet(store, fleets, declares):
-    fleets("acme", claims(sites)(open_acme) if declares else lambda *_: open_acme(*_))
+    fleets("acme", sites if declares else None)
     plan = planned(store, muster.load("6T-2R"))
 
     async def story():

@@ -58,7 +58,7 @@ def request_options(of: type[Settings], counts: str = "", without: Sequence[str]
     return decorate
 
 
-def settings_from(of: type[Settings] | None, texts: Sequence[str]) -> dict[str, Any]:
+def settings_from(of: type[Settings], texts: Sequence[str]) -> dict[str, Any]:
     """The settings of a fleet by `--setting KEY=VALUE`, as the class of its settings has them; KEY.NAME of mappings.
 
     Raises
@@ -66,7 +66,7 @@ def settings_from(of: type[Settings] | None, texts: Sequence[str]) -> dict[str, 
     ParameterError
         if one has not this form, or stands twice. Whether the fleet has it the class says.
     """
-    kinds = {} if of is None else {key_of(f): f for f in specified(of)}
+    kinds = {key_of(f): f for f in specified(of)}
     found: dict[str, Any] = {}
     for text in texts:
         name, equals, value = text.partition("=")

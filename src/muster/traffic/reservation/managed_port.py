@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import groupby, takewhile
+from itertools import groupby, pairwise, takewhile
 
 from muster.motion.outlook import Visit
-from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
+from muster.motion.port import Place, RobotPort, Telemetry, Waypoint, planar
+
+_STRAIGHT_M = 0.01
 
 
 class ManagedPort:
@@ -133,6 +136,25 @@ class ManagedPort:
         self._sent, self._marks, self._numbers = sent, len(way), numbers
         self._sent_order = self._port.send(sent)
         return True
+
+    def has_come(self, way: Sequence[Waypoint]) -> bool:
+        """Whether a way leads only to where the robot has come by its last order, which had nothing to do there."""
+        sent = self._sent or ()
+        return bool(sent) and not self._numbers and self._sent_passed >= len(sent) and sent[-1:] == tuple(way)
+
+    def added_m(self, way: Sequence[Waypoint]) -> float | None:
+        """Return by how many metres a way leads farther than what is left of the last order; None if it differs."""
+        said = self._said
+        left = () if self._sent is None or self._numbers else self._sent[self._sent_passed :]
+        if said is None or not left or len(way) < len(left) or tuple(way[: len(left) - 1]) != left[:-1]:
+            return None
+        before = planar(left[-2].position if len(left) > 1 else said.position)
+        end, beyond = planar(left[-1].position), [planar(waypoint.position) for waypoint in way[len(left) - 1 :]]
+        first_m = math.dist(end, beyond[0])
+        detour_m = math.dist(before, end) + first_m - math.dist(before, beyond[0])
+        if detour_m > _STRAIGHT_M or left[-1].speed_mps != way[len(left) - 1].speed_mps:
+            return None
+        return first_m + sum(math.dist(a, b) for a, b in pairwise(beyond))
 
     @property
     def sent_ahead(self) -> list[Place]:

@@ -27,6 +27,7 @@ class Part:
     number: int
     outlook: Outlook = Outlook(stays=True)  # where it will go after its goal
     moves_passed: int = 0  # ends of moves, by the orders before the last
+    sent_s: float = -math.inf  # when it was last sent on
     ends: int = 0  # how many of the places of the last order are ends of moves
     goal: Point | None = None  # by the last plan
     arrives: bool = False  # whether it has something to do there, by the last plan

@@ -16,6 +16,7 @@ import numpy as np
 
 from muster import core
 from muster.mission.model import Robot
+from muster.motion.kinematics.registry import limits_of
 from muster.motion.outlook import Outlook
 from muster.motion.port import Place, RobotPort, Waypoint, planar
 from muster.traffic.journeys.travellers import Move, Planner, Point, Stop, Traveller
@@ -47,6 +48,12 @@ NO_ROOM_AFTER = 2
 """One that has nothing to do, and was told anew so often, does not move at all."""
 NO_WAY_S = 10.0
 """After so long without a way a robot is told where no way leads at all, whoever stands in it."""
+NEEDED_S, EXTENDED_S, EXTENDED_M = 1.0, 2.0, 0.5
+"""A real robot is sent farther along its way when what is left of its order lasts for less than braking and the first
+of these times. Behind another robot it is sent on by at least the distance, or what it drives in the second time, or
+after that time: each order may make its navigation plan anew."""
+AHEAD_S = 4.0
+"""For how many seconds of driving a real robot may have begun moves, if that is farther than `AHEAD_M`."""
 _MOVED_M = 0.05
 _NEVER_S = -math.inf
 _AT_GOAL_M = 1e-3
@@ -64,12 +71,18 @@ class ReservedTraffic:
         what is left between two robots that pass.
     lanes
         on which only so many may be at once.
+    ahead_m
+        for how many metres a robot may have begun moves, which a new plan does not change.
+    sparing
+        whether an order that only leads farther along the same way waits until the robot needs it.
     """
 
     plan: Planner
     plans: int = 0
     margin_m: float = MARGIN_M
     lanes: Sequence[core.LimitedLane] = ()
+    ahead_m: float = AHEAD_M
+    sparing: bool = False
     _order: core.PassingOrder = field(init=False)
     _waiting: list[tuple[Robot, ManagedPort]] = field(default_factory=list)  # for their first telemetry
     _parts: list[Part] = field(default_factory=list)
@@ -80,7 +93,7 @@ class ReservedTraffic:
     _outlook: Callable[[str], Outlook] = field(default=lambda robot: Outlook(stays=True))
 
     def __post_init__(self) -> None:
-        self._order = core.PassingOrder(margin=self.margin_m, ahead=AHEAD_M, lanes=self.lanes)
+        self._order = core.PassingOrder(margin=self.margin_m, ahead=self.ahead_m, lanes=self.lanes)
 
     def managed(self, robot: Robot, port: RobotPort) -> RobotPort:
         """The port by which a robot is ordered; the port itself where no other that drives can run into it."""
@@ -137,7 +150,7 @@ class ReservedTraffic:
         elif now - self._sought_s >= PLAN_EVERY_S and self._on_steps(now):
             self._plan_anew(now, self.plan.whole)
         for part in self._parts:
-            self._let_go(part)
+            self._let_go(part, now)
             self._refuse_what_no_way_leads_to(part, now)
 
     def _take_in(self, now: float) -> None:
@@ -237,7 +250,7 @@ class ReservedTraffic:
     def _falls_short(self, part: Part) -> bool:
         """Whether the moves of a robot end before its goal, and it is coming near to where they end."""
         away = self._away_m(part) > _AT_GOAL_M
-        return away and not part.fixed and self._order.metres_left(part.number) < 2 * AHEAD_M
+        return away and not part.fixed and self._order.metres_left(part.number) < 2 * self.ahead_m
 
     def _goal(self, part: Part) -> Point | None:
         """Where a robot is to go or to stay; None: where it has nothing to do it may be anywhere."""
@@ -304,7 +317,7 @@ class ReservedTraffic:
         part.stays = part.outlook.stays and not part.more
         return stops[:most]
 
-    def _let_go(self, part: Part) -> None:
+    def _let_go(self, part: Part, now: float) -> None:
         """Send a robot as far as it may go."""
         if part.port.at_work:
             part.port.waits_for, part.to_go = "", False
@@ -324,9 +337,25 @@ class ReservedTraffic:
                 Waypoint((x, y, height), speed_mps=speed)
                 for (x, y), speed in zip(grant.points, grant.speeds, strict=True)
             ]
+            if self.sparing and not to_goal and self._can_wait(part, way, grant, now):
+                return
             if part.port.go(way, to_goal=to_goal):
-                part.moves_passed = self._order.passed(part.number)
+                part.moves_passed, part.sent_s = self._order.passed(part.number), now
             part.ends = part.port.marks_passed + grant.ended  # an order that was cut ends with a move
+
+    def _can_wait(self, part: Part, way: Sequence[Waypoint], grant: core.Grant, now: float) -> bool:
+        """Whether a robot does not need yet what a way adds to the order that it has."""
+        if part.port.has_come(way):
+            return True
+        added_m = part.port.added_m(way)
+        if grant.last or added_m is None:
+            return False
+        limits = limits_of(part.robot)
+        left_m = sum(math.dist(*piece) for piece in part.pieces_ahead())
+        if left_m > limits.braking_m(limits.speed_mps) + NEEDED_S * limits.speed_mps:
+            return True
+        is_short = added_m < max(EXTENDED_M, EXTENDED_S * limits.speed_mps)
+        return is_short and grant.waits_for >= 0 and now - part.sent_s < EXTENDED_S
 
     def _refuse_what_no_way_leads_to(self, part: Part, now: float) -> None:
         """Lanes may lead to no goal, or never back from one; what lies behind a closed door is not given up here."""

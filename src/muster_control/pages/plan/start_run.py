@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 from nicegui import ui
 
+from muster.cli.options.request import settings_from
 from muster.mission.errors import ParameterError
+from muster.mission.records import Settings, key_of, required, specified
+from muster.running.fleet_registry import FLEETS
 from muster.running.worlds import WORLDS
 from muster_control.contract import PlanEntry
 from muster_control.pages.buttons import once
@@ -51,8 +55,8 @@ def open_start(entry: PlanEntry, dimensions: int) -> None:
         form = ui.element("div").classes("full")
         now = ui.checkbox("Starts now: all times of the mission are shifted").props('id="starts-now"')
         now.bind_visibility_from(world, "value", lambda name: name not in simulated)
-        partial = ui.checkbox("Planning was cut short: carry out what is planned").props('id="accept-partial"')
-        partial.set_visibility(bool(entry.plan.get("cut_short")))
+        in_part = ui.checkbox("Planning was cut short: carry out what is planned").props('id="accept-partial"')
+        in_part.set_visibility(bool(entry.plan.get("cut_short")))
         reading: list[Reading] = []
 
         def ask() -> None:
@@ -65,7 +69,7 @@ def open_start(entry: PlanEntry, dimensions: int) -> None:
 
         async def begin() -> None:
             pace, settings = float(speed.value) if speed.value else None, reading[0]()
-            if partial.value:
+            if in_part.value:
                 settings["accept_partial"] = True
             if world.value not in simulated:
                 pace = 1.0
@@ -105,8 +109,20 @@ def _simulated(_: PlanEntry, __: int) -> Reading:
     }
 
 
-def _unset(_: PlanEntry, __: int) -> Reading:
-    return dict
+def _declared(settings: type[Settings], _: PlanEntry, __: int) -> Reading:
+    """A text for each setting of a fleet; one that is empty keeps its default."""
+    texts = {}
+    for f in specified(settings):
+        texts[key_of(f)] = _text(key_of(f))
+        texts[key_of(f)].props(f'id="setting-{key_of(f)}"').props["hint"] = f.metadata["doc"] + (
+            "" if required(f) else f"; {f.default} without it"
+        )
+
+    def read() -> dict[str, Any]:
+        given = {key: (text.value or "").strip() for key, text in texts.items()}
+        return settings_from(settings, [f"{key}={value}" for key, value in given.items() if value])
+
+    return read
 
 
 def _ros1(_: PlanEntry, __: int) -> Reading:
@@ -165,5 +181,5 @@ _FORMS: Mapping[str, Callable[[PlanEntry, int], Reading]] = {
 
 
 def _form_of(world: str) -> Callable[[PlanEntry, int], Reading]:
-    """Worlds of other packages are set as the simulated ones that ship; their fleets are set through the API."""
-    return _FORMS.get(world, _simulated if world in WORLDS else _unset)
+    """Worlds of other packages are set as the simulated ones that ship, their fleets by what they declare."""
+    return _FORMS.get(world) or (_simulated if world in WORLDS else partial(_declared, FLEETS[world].settings))
