@@ -9,6 +9,7 @@ from muster.motion.frames import wrapped
 from muster.motion.port import Place
 
 _TURN_RADPS = 1.0
+_FALLS_MPS = 8.0
 
 
 @dataclass
@@ -23,6 +24,13 @@ class Flight:
     @property
     def flies(self) -> bool:
         return self.place[2] < -0.1
+
+    def fall(self, by_s: float) -> None:
+        """Fall for so long, to the ground, without motors."""
+        north, east, down = self.place
+        fallen = min(0.0, down + _FALLS_MPS * by_s)
+        self.velocity = (0.0, 0.0, _FALLS_MPS if fallen < 0.0 else 0.0)
+        self.place = (north, east, fallen)
 
     def is_turned(self, yaw: float | None) -> bool:
         return yaw is None or abs(float(wrapped(yaw - self.yaw))) < 1e-6
