@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
+from muster.execution.robots.monitor import Limits
 from muster.mission.model import Event
 from muster.motion.port import RobotPort
 
@@ -28,6 +29,11 @@ def has_simulated_time(fleet: Fleet) -> bool:
     The clock of a mission is the wall clock otherwise.
     """
     return bool(getattr(fleet, "simulated_time", False))
+
+
+def limits_of(fleet: Fleet) -> Limits:
+    """Return how long what may last with a fleet, by its attribute `limits`; the defaults where it has none."""
+    return getattr(fleet, "limits", None) or Limits()
 
 
 def is_paused(fleet: Fleet) -> bool:

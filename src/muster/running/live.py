@@ -21,7 +21,7 @@ from muster.execution import (
     travel_of,
     way_of,
 )
-from muster.execution.fleet import Fleet, has_simulated_time, is_paused, reason_of
+from muster.execution.fleet import Fleet, has_simulated_time, is_paused, limits_of, reason_of
 from muster.mission.errors import NetworkError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
@@ -168,6 +168,7 @@ class Live:
             now=self._fleet.time_s,
             state=state,
             standing=self._standing,
+            limits=limits_of(fleet),
             on_doors=lambda closed: None if manager is None else manager.close(closed),
             leader=manager,
         )
