@@ -382,9 +382,8 @@ class Executor:
             if (said := state.hear(self.now_s)) is not None:
                 self._observer.on_telemetry(self.now_s, state.robot.id, said)
                 if state.out in _ABSENT and not state.suspended:
-                    if task := state.take_done_unheard():
-                        self.end_elsewhere(task, [state.robot.id])
                     self._changes.readmit(state, self.now_s)
+                    self._dispatch.end_unheard(state)
                 elif state.out == RobotStuck.kind and moves_again(state):
                     self._changes.readmit(state, self.now_s, "it moves again")
 

@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from muster.execution.final_state import FinalState
 from muster.execution.fleet import Failure
+from muster.execution.robots.monitor import Limits
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.system.clock import Clock, SystemClock
@@ -102,6 +103,11 @@ class MavlinkFleet:
         return self._clock.now() - self._begun_s
 
     @property
+    def limits(self) -> Limits:
+        """How long a drone may be silent, and how long the mission waits for one that is absent."""
+        return Limits(silent_after_s=self._settings.link_lost_s, absent_for_s=self._settings.absent_s)
+
+    @property
     def faults(self) -> list[Fault]:
         """What went wrong so far, in order of time."""
         found = [fault for session in self.sessions.values() for fault in session.faults]
@@ -144,7 +150,7 @@ class MavlinkFleet:
         self._speak_last_words()
         with self._lock:
             for session in self.sessions.values():
-                session.note_missing_hold()
+                session.note_missing_hold(self.time_s)
 
     def end(self, at_end: AtEnd) -> None:
         """Let every drone that flies, and answers, end its flight: also those that take no part any more."""
@@ -205,7 +211,7 @@ class MavlinkFleet:
             for drone in drones
             if drone.telemetry.armed
             and drone.telemetry.mode in (drone.kind.back, drone.kind.land)
-            and self.time_s < drone.telemetry.heartbeat_s + _STANDSTILL_S
+            and self.time_s < drone.telemetry.heard_s + _STANDSTILL_S
         ]
 
     def _tell_all(self, what: Callable[[Session, float], object]) -> None:
@@ -225,7 +231,7 @@ class MavlinkFleet:
     def _speak_last_words(self) -> None:
         least, most = (self.time_s + seconds for seconds in _LAST_WORDS_S)
         while self.time_s < least or (
-            self.time_s < most and any(session.busy or session.hold_pending for session in self.sessions.values())
+            self.time_s < most and any(session.busy or session.is_pending for session in self.sessions.values())
         ):
             self._go_on()
 

@@ -4,6 +4,7 @@ import pytest
 from tests.muster_robots.mavlink.fault_flights import FAR, fly
 
 from muster.mission.model import Task
+from muster_robots.mavlink import Kind
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
 from muster_robots.mavlink.simulated.faults import Faults
 
@@ -77,7 +78,7 @@ def test_a_pilot_who_gives_the_drone_back_finds_it_brought_home_with_the_others(
 
 
 def test_h01_the_position_lost_within_a_gap_ends_in_one_state():
-    flight = fly(Faults(silent_at_s=8, silent_for_s=8, gps_lost_at_s=10, gps_lost_for_s=10))
+    flight = fly(Faults(silent_at_s=8, silent_for_s=8, gps_lost_at_s=10, gps_lost_for_s=9))
     assert flight.done == ALL
     assert "robot_fails" not in flight.kinds("r_0")
     assert {state.state for state in flight.states.values()} == {HOME}
@@ -101,7 +102,8 @@ def test_h02_a_low_battery_loses_the_tasks_and_says_so():
     flight = fly(Faults(low_battery_at_s=8, low_battery=0.24), count=1)
     assert flight.lost
     assert flight.states["r_0"].state == HOME
-    assert all("low battery" in why for why in flight.lost.values())
+    assert [fault.kind for fault in flight.fleet.faults] == [Kind.LOW_BATTERY]
+    assert all("r_0 (failed at" in why for why in flight.lost.values())
 
 
 @KINDS

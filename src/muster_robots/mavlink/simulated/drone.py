@@ -24,6 +24,7 @@ from muster_robots.mavlink.simulated.flight import Flight
 _OFFBOARD_LOST_S = 1.0
 _DISARMS_AFTER_S = 2.0
 """Seconds on the ground after which a drone that has landed disarms itself (PX4: COM_DISARM_LAND)."""
+_LANDS_MPS = 1.5
 _STICKS = mavlink.MAV_SYS_STATUS_SENSOR_RC_RECEIVER
 
 
@@ -197,7 +198,7 @@ class SimulatedAutopilot:
             self.flight.go(self._setpoint, by_s, self._yaw)
         elif self.mode in (self.kind.back, self.kind.land):
             home = self.mode == self.kind.land or self.flight.go((0.0, 0.0, self.flight.place[2]), by_s)
-            if home and self.flight.go((*self.flight.place[:2], 0.0), by_s):
+            if home and self.flight.go((*self.flight.place[:2], 0.0), by_s, most_mps=_LANDS_MPS):
                 self._landed_s = self._now if self._landed_s is None else self._landed_s
                 if self._now >= self._landed_s + _DISARMS_AFTER_S:
                     self.armed, self._landed_s = False, None
