@@ -159,7 +159,7 @@ class FlightSettings(Settings):
         default=10.0,
     )
     silences: int = spec(
-        Whole(minimum=1),
+        Whole(),
         "silences and unanswered commands within two minutes after which a drone is out for good",
         default=5,
     )

@@ -26,11 +26,9 @@ class FaultDetector:
     _low_since_s: float = math.inf
 
     def check_clock(self, now: float) -> None:
-        """Raise `FaultError` if a drone that was asked to arm has left its fence, or its battery is low."""
+        """Raise `FaultError` if the battery of a drone that was asked to arm is low."""
         if not self.drone.asked_to_arm:
             return
-        if self.drone.telemetry.breach and (self.drone.route or self.drone.follower):
-            raise FaultError(Kind.FENCE_BREACHED, self.drone.telemetry.breach)
         if not self._low_in_words():
             self._low_since_s = math.inf
         elif self.drone.stands or now >= self._low_since_s + _LOW_S:

@@ -213,8 +213,9 @@ class Session:
         did_not_obey = kind in (Kind.NO_ANSWER, Kind.COMMAND_REFUSED) and self.drone.telemetry.was_up
         if kind is Kind.START_REFUSED and self.drone.telemetry.critical:
             did_not_obey = True
-        if did_not_obey or kind is Kind.FENCE_BREACHED:
+        if did_not_obey:
             self.custody.suspect(now)
+        if did_not_obey or kind is Kind.FENCE_BREACHED:
             self._suspended = fault
         if kind.costs is Costs.TASK and not did_not_obey:
             self._refused = fault.reason
@@ -266,8 +267,10 @@ class Session:
             self._silent_since_s = self.drone.telemetry.place_s
         elif after in _KIND_OF:
             self._suspend(_KIND_OF[after], now)
-        elif (seen := self.drone.seen(busy=self.busy)).unfit and self._suspended is None:
-            self._suspend(Kind.FENCE_BREACHED if self.drone.telemetry.breach else Kind.NO_POSITION, now, seen.unfit)
+        elif self._suspended is None and self.drone.telemetry.breach:
+            self.fail(Kind.FENCE_BREACHED, self.drone.telemetry.breach, now)
+        elif self._suspended is None and (unfit := self.drone.seen(busy=self.busy).unfit):
+            self._suspend(Kind.NO_POSITION, now, unfit)
         if self.custody.is_worn_out(now):
             limits = self.custody.limits
             often = f"silent, or without an answer, more than {limits.troubles} times in {limits.troubles_within_s:g} s"

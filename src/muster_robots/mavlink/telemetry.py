@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections import deque
+from dataclasses import dataclass, field, replace
 
 from muster.execution.final_state import UP_M
 from muster.motion.frames import enu_to_ned, yaw_enu_to_ned
@@ -17,6 +18,7 @@ _TEXTS = 30  # so many status texts are kept
 _STEADY_MPS = 0.5  # slower than that upwards or downwards, it does not fall
 _TOUCHED_S = 1.0  # for so long the autopilot must have said that the drone is on the ground, before it is disarmed
 _LANDS_BELOW_M = 2.0  # above its start; a drone that is disarmed higher, and has not touched down, falls
+_FALLS_S = 2.0  # so long before, at most, its motors have stopped
 _STALE_S = 2.0  # a position that is older, when something else arrives, is not where the drone is
 _BREACH_S = 10.0  # for so long a breach counts that was said by a text alone
 
@@ -51,6 +53,7 @@ class DroneTelemetry:
     heard_since_s: float = -math.inf  # since when there was no gap
     motors_off_m: float | None = None  # metres above its start at which its motors stopped, if that was in the air
     _breach_until_s: float = math.inf
+    _heights: deque[tuple[float, float]] = field(default_factory=lambda: deque(maxlen=100))  # time, above its start
     _touched_s: float | None = None  # since when it says that it is on the ground, and is armed
     local: LocalFrame | None = None
     _ned: Place | None = None
@@ -103,8 +106,8 @@ class DroneTelemetry:
     def _stop_motors(self, now: float) -> None:
         """Note the height at which a drone was disarmed that has not touched down."""
         touched = self._touched_s is not None and now >= self._touched_s + _TOUCHED_S
-        above_m = self.place[2] - self.start[2] if self.place is not None and self.is_located else None
-        if not touched and above_m is not None and above_m > _LANDS_BELOW_M:
+        above_m = max((up for at_s, up in self._heights if at_s >= now - _FALLS_S), default=0.0)
+        if not touched and above_m > _LANDS_BELOW_M:
             self.motors_off_m = above_m
 
     def _hear_extended_sys_state(self, message: Message, now: float) -> None:
@@ -174,4 +177,5 @@ class DroneTelemetry:
         if self.place is not None and self.armed and math.hypot(*self.velocity) > _STILL_MPS:
             self.odometry_m += math.dist(self.place, place)
         self.place, self.place_s = place, now
+        self._heights.append((now, place[2] - self.start[2]))
         self.was_up = self.was_up or self.up

@@ -9,7 +9,6 @@ import muster
 from muster.mission.model import Task
 from muster.running.live import carry_out_live
 from muster_robots.mavlink.autopilots import PX4
-from muster_robots.mavlink.simulated.faults import Faults
 
 FAR = tuple(Task(id=f"t_{k}", position=(60.0, 6.0 * k, 10.0)) for k in range(4))
 """Tasks that are a dozen seconds of flight away from the starts."""
@@ -69,5 +68,3 @@ def fly(faults, *, count=2, tasks=FAR, kind=PX4, at_end="return", **settings):
         fleet.close()
         sky.close()
     return Flight(report, fleet, sky.drones, states, heard)
-
-

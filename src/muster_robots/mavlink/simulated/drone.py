@@ -181,7 +181,7 @@ class SimulatedAutopilot:
         self._say("attitude", ms, 0, 0, flight.yaw, 0, 0, 0)
         state = mavlink.MISSION_STATE_COMPLETE if self.complete else mavlink.MISSION_STATE_ACTIVE
         self._say("mission_current", self.current, len(self.items), state)
-        if self._is_on("gps_lost"):
+        if self._is_on("gps_lost") or self._is_on("no_position"):
             return
         self._say("global_position_int", ms, lat, lon, round((50 + up) * 1000), round(up * 1000), *velocity, 65535)
         self._say("local_position_ned", ms, *flight.place, *flight.velocity)

@@ -33,6 +33,8 @@ class Faults:
         failsafe is on for `FLASH_S`; then PX4 resumes the mission.
     gps_lost_at_s, gps_lost_for_s : float
         The position is not known: the drone descends, and lands if that lasts.
+    no_position_at_s, no_position_for_s : float
+        The drone says nothing of its position, and flies on.
     low_battery_at_s, low_battery_for_s, low_battery : float
         The battery reports the share `low_battery`.
     breach_at_s, breach_text_at_s, breach_for_s : float
@@ -67,6 +69,8 @@ class Faults:
     frozen_for_s: float = 8.0
     gps_lost_at_s: float | None = None
     gps_lost_for_s: float = math.inf
+    no_position_at_s: float | None = None
+    no_position_for_s: float = math.inf
     low_battery_at_s: float | None = None
     low_battery_for_s: float = math.inf
     low_battery: float = 0.1
