@@ -105,6 +105,8 @@ class Drone:
         kind, mode = self.kind, self.telemetry.mode
         if not self.telemetry.armed:
             return Wants.IDLE
+        if self.stands:  # armed on the ground it is about to take off, whatever its mode
+            return Wants.ORDER
         does = {kind.hold: Wants.HOLD, kind.back: Wants.RETURN, kind.land: Wants.LAND}
         return does.get(mode, Wants.ORDER if mode in kind.own_modes else None)
 

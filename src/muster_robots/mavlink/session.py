@@ -69,7 +69,7 @@ class Session:
         self._suspended: Fault | None = None  # why it takes no part for now
         self._unheard: UnheardOrder | None = None
         self._order = 0
-        self._begun_s = float("-inf")  # when the last command was begun
+        self._texts_before = 0  # status texts that had arrived when the last command was begun
         self._silent_since_s = float("-inf")  # time of the last position before a silence
         self._outbox: list[Message] = []
         self._requests: RequestSequence | None = None
@@ -147,8 +147,8 @@ class Session:
         if self.fault is not None and not self._may_interrupt(self.fault, at_end):
             return
         self.custody.want(_WANTED[at_end])
+        self._requests = None
         if self.custody.is_heard and (self.fault is None or self._is_left_to_us):
-            self._requests = None
             self._try(lambda: self._end_flight(now), now)
 
     @property
@@ -182,6 +182,7 @@ class Session:
             self.drone.autopilot = autopilot_of(message, self.drone.robot.id)
         if self.drone.autopilot is None:
             return
+        self.drone.telemetry.note_heard(now)
         self.drone.telemetry.hear(message, now)
         if message.get_type() == "STATUSTEXT":
             self._add_texts(now)
@@ -232,14 +233,18 @@ class Session:
 
     def _texts_of(self, kind: Kind, now: float) -> tuple[StatusText, ...]:
         """The status texts that may give the cause of a fault: of a refusal all since the command."""
-        return self.drone.telemetry.texts_since(self._begun_s if kind.is_refusal else now - TEXTS_BEFORE_S)
+        telemetry = self.drone.telemetry
+        refusal = kind.is_refusal
+        return telemetry.texts_after(self._texts_before) if refusal else telemetry.texts_since(now - TEXTS_BEFORE_S)
 
     def _add_texts(self, now: float) -> None:
         """Add a status text that arrives shortly after a fault to it."""
         if not self.faults or not self.faults[-1].awaits_texts(now):
             return
-        before = self.faults[-1]
-        after = self.faults[-1] = replace(before, texts=(*before.texts, self.drone.telemetry.texts[-1]))
+        before, new = self.faults[-1], self.drone.telemetry.texts[-1]
+        pieces = [text for text in before.texts if text.at_s == new.at_s and new.text.startswith(text.text)]
+        known = tuple(text for text in before.texts if text not in pieces)
+        after = self.faults[-1] = replace(before, texts=(*known, new))
         self.fault = after if self.fault is before else self.fault
         self._suspended = after if self._suspended is before else self._suspended
         self._refused = after.reason if self._refused == before.reason else self._refused
@@ -329,7 +334,7 @@ class Session:
         )
 
     def _begin(self, script: Script, now: float) -> None:
-        self._begun_s = now
+        self._texts_before = self.drone.telemetry.texts_heard
         self._requests = RequestSequence(script, self._say, now)
 
     def _answer(self, message: Message, now: float) -> None:

@@ -49,6 +49,7 @@ class DroneTelemetry:
     sticks: bool = False  # whether a pilot's input device works
     breach: str = ""  # of the fence of the autopilot, in words
     texts: tuple[StatusText, ...] = ()  # its last status texts, the latest at the end
+    texts_heard: int = 0
     heard_s: float = -math.inf  # when anything arrived last
     heard_since_s: float = -math.inf  # since when there was no gap
     motors_off_m: float | None = None  # metres above its start at which its motors stopped, if that was in the air
@@ -61,6 +62,10 @@ class DroneTelemetry:
     def texts_since(self, since_s: float) -> tuple[StatusText, ...]:
         """The status texts that have arrived since a time."""
         return tuple(text for text in self.texts if text.at_s >= since_s)
+
+    def texts_after(self, count: int) -> tuple[StatusText, ...]:
+        """The status texts that have arrived after so many."""
+        return self.texts[max(0, len(self.texts) - (self.texts_heard - count)) :]
 
     @property
     def mode(self) -> int:
@@ -86,10 +91,13 @@ class DroneTelemetry:
         """Whether it is in the air, armed."""
         return self.armed and self.place is not None and self.place[2] > self.start[2] + UP_M
 
-    def hear(self, message: Message, now: float) -> None:
-        """Take in one message."""
+    def note_heard(self, now: float) -> None:
+        """Note that something has arrived, whatever it is."""
         self.heard_since_s = now if now > self.heard_s + _STALE_S else self.heard_since_s
         self.heard_s = now
+
+    def hear(self, message: Message, now: float) -> None:
+        """Take in one message."""
         if now > self._breach_until_s:
             self.breach, self._breach_until_s = "", math.inf
         take = getattr(self, f"_hear_{message.get_type().lower()}", None)
@@ -162,6 +170,7 @@ class DroneTelemetry:
             self.texts = (*self.texts[:-1], replace(last, text=last.text + text))
         else:
             self.texts = (*self.texts, StatusText(now, message.severity, text))[-_TEXTS:]
+            self.texts_heard += 1
         words = self.texts[-1].text.lower()
         if "fence" in words and "breach" in words:
             cleared = "clear" in words

@@ -78,7 +78,7 @@ def test_a_pilot_who_gives_the_drone_back_finds_it_brought_home_with_the_others(
 
 
 def test_h01_the_position_lost_within_a_gap_ends_in_one_state():
-    flight = fly(Faults(silent_at_s=8, silent_for_s=8, gps_lost_at_s=10, gps_lost_for_s=9))
+    flight = fly(Faults(silent_at_s=8, silent_for_s=8, gps_lost_at_s=10, gps_lost_for_s=7))
     assert flight.done == ALL
     assert "robot_fails" not in flight.kinds("r_0")
     assert {state.state for state in flight.states.values()} == {HOME}
