@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections import deque
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from muster.execution.final_state import UP_M
 from muster.motion.frames import enu_to_ned, yaw_enu_to_ned
@@ -16,9 +15,8 @@ from muster_robots.mavlink.frames import GlobalFrame, LocalFrame
 _STILL_MPS = 0.2  # slower is noise, and no way
 _TEXTS = 30  # so many status texts are kept
 _STEADY_MPS = 0.5  # slower than that upwards or downwards, it does not fall
-_TOUCHED_S = 1.0  # for so long the autopilot must have said that the drone is on the ground, before it is disarmed
+_TOUCHED = 10  # so often the autopilot has said that the drone is on the ground, a second long, before it is disarmed
 _LANDS_BELOW_M = 2.0  # above its start; a drone that is disarmed higher, and has not touched down, falls
-_FALLS_S = 2.0  # so long before, at most, its motors have stopped
 _STALE_S = 2.0  # a position that is older, when something else arrives, is not where the drone is
 _BREACH_S = 10.0  # for so long a breach counts that was said by a text alone
 
@@ -54,8 +52,8 @@ class DroneTelemetry:
     heard_since_s: float = -math.inf  # since when there was no gap
     motors_off_m: float | None = None  # metres above its start at which its motors stopped, if that was in the air
     _breach_until_s: float = math.inf
-    _heights: deque[tuple[float, float]] = field(default_factory=lambda: deque(maxlen=100))  # time, above its start
-    _touched_s: float | None = None  # since when it says that it is on the ground, and is armed
+    _in_air_m: float | None = None  # metres above its start when it last said that it is in the air
+    _touched: int = 0  # how often it has said since that it is on the ground, and was armed and steady
     local: LocalFrame | None = None
     _ned: Place | None = None
 
@@ -109,21 +107,25 @@ class DroneTelemetry:
         if self.armed:
             self.motors_off_m = None
         elif was_armed and self.was_up:
-            self._stop_motors(now)
+            self._stop_motors()
 
-    def _stop_motors(self, now: float) -> None:
+    def _stop_motors(self) -> None:
         """Note the height at which a drone was disarmed that has not touched down."""
-        touched = self._touched_s is not None and now >= self._touched_s + _TOUCHED_S
-        above_m = max((up for at_s, up in self._heights if at_s >= now - _FALLS_S), default=0.0)
-        if not touched and above_m > _LANDS_BELOW_M:
+        above_m = self._in_air_m if self._in_air_m is not None else self._above_m
+        if self._touched < _TOUCHED and above_m is not None and above_m > _LANDS_BELOW_M:
             self.motors_off_m = above_m
+
+    @property
+    def _above_m(self) -> float | None:
+        """Its height above its start, metres; None where its position is not known."""
+        return self.place[2] - self.start[2] if self.place is not None and self.is_located else None
 
     def _hear_extended_sys_state(self, message: Message, now: float) -> None:
         steady = abs(self.velocity[2]) < _STEADY_MPS or not self.is_located
-        if message.landed_state != mavlink.MAV_LANDED_STATE_ON_GROUND or not steady:
-            self._touched_s = None
-        elif self.armed and self._touched_s is None:
-            self._touched_s = now
+        if message.landed_state not in (mavlink.MAV_LANDED_STATE_ON_GROUND, mavlink.MAV_LANDED_STATE_UNDEFINED):
+            self._touched, self._in_air_m = 0, self._above_m
+        elif steady and self.armed:
+            self._touched += 1
 
     def _hear_global_position_int(self, message: Message, now: float) -> None:
         """Degrees times 1e7, mm above home, cm/s north, east, down."""
@@ -186,5 +188,4 @@ class DroneTelemetry:
         if self.place is not None and self.armed and math.hypot(*self.velocity) > _STILL_MPS:
             self.odometry_m += math.dist(self.place, place)
         self.place, self.place_s = place, now
-        self._heights.append((now, place[2] - self.start[2]))
         self.was_up = self.was_up or self.up
