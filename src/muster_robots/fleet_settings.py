@@ -189,7 +189,8 @@ class MavlinkSettings(FlightSettings):
 
     endpoints: Mapping[str, str] = spec(
         Table(Text(), "a mapping from each robot to its endpoint, such as udp:0.0.0.0:14550"),
-        "how each robot is reached: udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD]; #SYSTEM "
+        "how each robot is reached: udp:HOST:PORT (listens), udpout:HOST:PORT or tcp:HOST:PORT (call), "
+        "serial:DEVICE[:BAUD]; #SYSTEM "
         "after it, of several on it",
         option="--endpoint",
         metavar="ROBOT=ENDPOINT",

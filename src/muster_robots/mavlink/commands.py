@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from muster.motion.port import Waypoint
 from muster_robots.follower import Follower
 from muster_robots.mavlink.drone import Drone
-from muster_robots.mavlink.faults import FaultError
+from muster_robots.mavlink.faults import FaultError, Kind
 from muster_robots.mavlink.mission_items import route_of
 from muster_robots.mavlink.position_targets import TURNED_RAD
 from muster_robots.mavlink.procedures import armed, climb, disarmed, started, upload
@@ -86,6 +86,9 @@ def stand_down(drone: Drone) -> Script:
 
 
 def _armed(drone: Drone) -> Script:
+    if drone.telemetry.doubles.are_there and not drone.asked_to_arm:
+        system = drone.target.get_srcSystem()
+        raise FaultError(Kind.ARM_REFUSED, f"two autopilots have the system id {system}; expected one")
     drone.asked_to_arm = True
     if drone.disarming or not drone.telemetry.armed:
         yield from armed(drone.target)

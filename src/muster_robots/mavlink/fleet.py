@@ -34,6 +34,8 @@ _LAST_WORDS_S = 1.0, 15.0
 """Seconds, at least and at most, for which final commands are sent to drones that do not confirm, or are silent."""
 _HEARTBEAT_S = 1.5
 """Seconds within which a drone sends a heartbeat."""
+_COMPARED_S = 0.5
+"""Seconds for which messages are compared before anything is ordered: two autopilots may have one system id."""
 _STANDSTILL_S, _MOVED_M = 20.0, 3.0
 """A drone that returns or lands and moves less in this time is waited for no longer."""
 
@@ -124,6 +126,7 @@ class MavlinkFleet:
             if one is none that Muster flies, or stands far from where the mission says, or is not alone on its line.
         """
         self._listen_until(self.time_s + within_s, lambda drone: drone.located)
+        self._listen_until(self.time_s + _COMPARED_S, lambda drone: drone.autopilot is None)
         for name, session in self.sessions.items():
             self._require_one(name, within_s)
             if not session.drone.located:
@@ -268,6 +271,11 @@ class MavlinkFleet:
         if link.others:
             found = " and ".join(map(str, [link.system_of(name), *sorted(link.others)]))
             raise ParameterError(f"{name}: systems {found} on {link.name}; expected one, or which: {link.name}#1")
+        if self.sessions[name].drone.telemetry.doubles.are_there:
+            found = f"two autopilots with the system id {link.system_of(name)} on {link.name}"
+            raise ParameterError(
+                f"{name}: {found}; expected an id for each (PX4: MAV_SYS_ID, ArduPilot: SYSID_THISMAV)"
+            )
 
     def _require_near(self, drone: Drone) -> None:
         place, start = drone.telemetry.place, drone.telemetry.start

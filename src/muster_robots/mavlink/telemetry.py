@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from muster.execution.final_state import UP_M
 from muster.motion.frames import enu_to_ned, yaw_enu_to_ned
 from muster.motion.port import Place
 from muster_robots.mavlink.dialect import Message, mavlink, name_of
+from muster_robots.mavlink.doubles import Doubles
 from muster_robots.mavlink.faults import StatusText
 from muster_robots.mavlink.frames import GlobalFrame, LocalFrame
 
@@ -55,6 +56,7 @@ class DroneTelemetry:
     _in_air_m: float | None = None  # metres above its start when it last said that it is in the air
     _touched: int = 0  # how often it has said since that it is on the ground, and was armed and steady
     local: LocalFrame | None = None
+    doubles: Doubles = field(default_factory=Doubles)
     _ned: Place | None = None
 
     def texts_since(self, since_s: float) -> tuple[StatusText, ...]:
@@ -96,6 +98,7 @@ class DroneTelemetry:
 
     def hear(self, message: Message, now: float) -> None:
         """Take in one message."""
+        self.doubles.hear(message)
         if now > self._breach_until_s:
             self.breach, self._breach_until_s = "", math.inf
         take = getattr(self, f"_hear_{message.get_type().lower()}", None)
