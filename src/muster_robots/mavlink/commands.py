@@ -34,7 +34,8 @@ def mission(drone: Drone, waypoints: Sequence[Waypoint]) -> Script:
     yield from _armed(drone)
     drone.mode, drone.changing_mode = None, True
     yield from started(drone.target, kind, route.first)
-    drone.route, drone.mode, drone.changing_mode = route, kind.mission, False
+    drone.route, drone.mode = route, kind.mission
+    drone.changing_mode = telemetry.mode != kind.mission  # the start may have been shown by an item that is reached
 
 
 def guided(drone: Drone, waypoints: Sequence[Waypoint]) -> Script:

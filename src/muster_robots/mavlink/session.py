@@ -344,6 +344,8 @@ class Session:
             self._requests = None if self._requests.done else self._requests
         elif beats and self.fault is None:
             self._fault_detector.check_heartbeat()
+        if beats and self._requests is None and self.drone.mode == self.drone.telemetry.mode:
+            self.drone.changing_mode = False
         self._see_progress(message)
 
     def _see_progress(self, message: Message) -> None:
