@@ -52,7 +52,7 @@ from muster.state.mission_state import AT_MOST_ONCE
 from muster.state.quantiles import Quantiles
 from muster.state.robot_events import RobotFails, RobotsFree, RobotSilent, RobotStuck, RobotSuspended, WayClosed
 from muster.state.run_events import IMPROVED, EventRefused, MissionEnded, PlanAdopted, Replanned, Resumed
-from muster.state.task_events import DoneElsewhere, Lost, NewTask, WorkBrokenOff
+from muster.state.task_events import DoneElsewhere, Lost, NewTask, TaskRefused, WorkBrokenOff
 
 _ABSENT = (RobotSilent.kind, RobotSuspended.kind)
 """Kinds of the events after which a robot takes no part for a while, and takes part again by itself."""
@@ -301,6 +301,11 @@ class Executor:
     def plan_again(self, cause: ExecutionEvent) -> None:
         """Have the rest planned again at the next tick, because of something that is known elsewhere."""
         self._ask(cause)
+
+    def refuse(self, robot: str, task: str, reason: str) -> None:
+        """Note that a robot cannot do an open task, as is known before it is sent there: others do it, if they can."""
+        if robot in self.crew and self.ledger.is_open(task) and robot not in self.ledger.refusals.get(task, {}):
+            self._ask(TaskRefused(task=task, robot=robot, reason=reason))
 
     def go_other_ways(self, robots: Collection[str]) -> None:
         """Ways of robots under way turn out to be closed: they go by others, and stop where there are none.

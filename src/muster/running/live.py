@@ -21,7 +21,7 @@ from muster.execution import (
     travel_of,
     way_of,
 )
-from muster.execution.fleet import Fleet, has_simulated_time, is_paused, limits_of, reason_of
+from muster.execution.fleet import Fleet, has_simulated_time, is_paused, limits_of, reason_of, refusals_of
 from muster.mission.errors import NetworkError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
@@ -172,6 +172,8 @@ class Live:
             on_doors=lambda closed: None if manager is None else manager.close(closed),
             leader=manager,
         )
+        for robot, task, reason in refusals_of(fleet, mission):
+            self.executor.refuse(robot, task, reason)
         if manager is not None:
             manager.expect(self.executor.outlook)
         if state is None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from muster.execution.final_state import FinalState
 from muster.mission.model import Robot
-from muster.motion.port import Waypoint
+from muster.motion.port import Place, Waypoint
 from muster_robots.custody import Holder, Seen, Wants
 from muster_robots.fleet_settings import FlightSettings
 from muster_robots.follower import Follower
@@ -53,6 +53,8 @@ class Drone:
     route: Route | None = None  # the mission that it flies
     follower: Follower | None = None  # or what leads it
     passed: int = 0
+    home: Place | None = None  # where it stood before it was armed
+    parameters: dict[str, float] = field(default_factory=dict)  # that limit where it may fly, as far as it has them
 
     @property
     def kind(self) -> Autopilot:

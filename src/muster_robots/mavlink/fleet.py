@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from muster.execution.final_state import FinalState
 from muster.execution.fleet import Failure
@@ -18,6 +18,8 @@ from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.system.clock import Clock, SystemClock
 from muster.mission.value_types import shown
+from muster.motion import actions
+from muster.motion.actions import Impossible
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 from muster_robots.fleet_settings import FlightSettings
 from muster_robots.mavlink.autopilots import AtEnd
@@ -134,8 +136,26 @@ class MavlinkFleet:
                     f"{name}: no position within {within_s:g} s; expected a drone that knows where it is"
                 )
             self._require_near(session.drone)
+        self._read_limits()
         if self._speaker is not None:
             self._speaker.start()
+
+    def _read_limits(self) -> None:
+        """Read what limits each drone by the parameters of its autopilot, before it gets an order."""
+        self._tell_all(Session.read_limits)
+        while any(session.busy for session in self.sessions.values()):
+            self._go_on()
+
+    def refusals(self, mission: Mission) -> Iterator[tuple[str, str, str]]:
+        """For each task that an autopilot would refuse to fly: the robot, the task, and why."""
+        for robot in mission.robots:
+            session = self.sessions[robot.id]
+            for task in mission.tasks if session.drone.parameters else ():
+                doing = actions.plan(task, robot)
+                if not isinstance(doing, Impossible):
+                    flown = session.drone.flown(doing.waypoints)
+                    if why := session.refusal([waypoint.position for waypoint in flown]):
+                        yield robot.id, task.id, f"{Kind.OUTSIDE_FENCE.words}: {why}"
 
     def advance(self, until_s: float) -> Sequence[Event]:
         """Receive and send; reports each drone with a fault once (`robot_fails`). Raises what has ended the thread."""

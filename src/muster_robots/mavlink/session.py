@@ -18,6 +18,7 @@ from muster_robots.mavlink.drone import Drone
 from muster_robots.mavlink.fault_detection import FaultDetector
 from muster_robots.mavlink.faults import TEXTS_BEFORE_S, Costs, Fault, FaultError, Kind, Reaction, StatusText
 from muster_robots.mavlink.mission_items import Route
+from muster_robots.mavlink.own_limits import limits_of, read_parameters
 from muster_robots.mavlink.position_targets import EVERY_S, position_target
 from muster_robots.mavlink.procedures import command
 from muster_robots.mavlink.requests import RequestSequence, Script
@@ -130,6 +131,23 @@ class Session:
             self.custody.want(Wants.ORDER if waypoints else Wants.HOLD)
             self._try(lambda: self._set_out(self.drone.flown(waypoints), now), now)
         return self._order
+
+    def read_limits(self, now: float) -> None:
+        """Ask for the parameters that limit where it may fly; only with leave to arm."""
+        if self.drone.settings.arm and self.drone.autopilot is not None:
+            if not self.drone.telemetry.armed:
+                self.drone.home = self.drone.telemetry.place
+            script = read_parameters(self.drone.target, self.drone.kind, self.drone.parameters)
+            self._requests = RequestSequence(script, self._say, now)
+
+    def refusal(self, places: Sequence[Place]) -> str:
+        """Why places, in the order of flight, are outside the limits of its autopilot; empty if they are not."""
+        drone = self.drone
+        if drone.autopilot is None:
+            return ""
+        limits = limits_of(drone.kind, drone.parameters)
+        home = drone.home or drone.telemetry.start
+        return next((why for limit in limits if (why := limit.refusal(home, places))), "")
 
     def hold(self, now: float) -> int:
         """Let it stay where it is, if it flies, and is ours; on the ground it is not left armed."""
@@ -305,7 +323,7 @@ class Session:
             self.custody.let_go(self.drone.seen(busy=False))
             self._change_standing(self.custody.standing, now)
             return
-        refusal = self.fence(here, waypoints)
+        refusal = self.fence(here, waypoints) or self.refusal([waypoint.position for waypoint in waypoints])
         if refusal:
             raise FaultError(Kind.OUTSIDE_FENCE, refusal)
         if not waypoints:

@@ -121,8 +121,11 @@ FAMILIES = {
     "battery low": lambda draw: {"low_battery_at_s": _at(draw), "low_battery": 0.2},
     "battery sags for a second": lambda draw: {"low_battery_at_s": _at(draw), "low_battery_for_s": 1.0},
     "fence breached, 2 to 10 s": lambda draw: {"breach_at_s": _at(draw), "breach_for_s": draw.uniform(2, 10)},
-    "fence refuses way points": lambda draw: {"fence_m": draw.uniform(20, 70)},
-    "first way point too far": lambda draw: {"first_item_m": draw.uniform(20, 70)},
+    "fence refuses way points": lambda draw: {"fence_m": draw.uniform(20, 70), "mute_parameters": draw.random() < 0.5},
+    "first way point too far": lambda draw: {
+        "first_item_m": draw.uniform(20, 70),
+        "mute_parameters": draw.random() < 0.5,
+    },
     "item rejected": lambda draw: {"reject_item": draw.randint(0, 2)},
     "return by another station": lambda draw: {"rtl_at_s": _at(draw)},
     "pilot with sticks, released": lambda draw: {"pilot_at_s": _at(draw), "pilot_for_s": draw.uniform(2, 10)},

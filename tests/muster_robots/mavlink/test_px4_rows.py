@@ -51,7 +51,7 @@ def test_f06_who_is_called_home_by_another_station_is_left_to_it_and_its_words_a
 @KINDS
 def test_f07_what_a_fence_of_the_autopilot_refuses_others_do_and_the_drone_does_the_rest(kind):
     near = tuple(Task(id=f"n_{k}", position=(20.0, 6.0 * k, 10.0)) for k in range(4))
-    flight = fly(Faults(fence_m=40.0), tasks=(*FAR[:2], *near), kind=kind)
+    flight = fly(Faults(fence_m=40.0, mute_parameters=True), tasks=(*FAR[:2], *near), kind=kind)
     assert flight.done == {"t_0", "t_1", *(task.id for task in near)}
     assert "robot_fails" not in flight.kinds("r_0")
     refused = [event.data for event in flight.events if event.kind == "task_refused"]
@@ -118,8 +118,33 @@ def test_g08_motors_that_stop_in_the_air_are_a_crash(kind):
 
 def test_h04_a_way_point_too_far_costs_its_task_and_not_the_drone():
     tasks = (*FAR, Task(id="far", position=(1200.0, 0.0, 10.0)))
-    flight = fly(Faults(first_item_m=900.0), count=1, tasks=tasks)
+    flight = fly(Faults(first_item_m=900.0, mute_parameters=True), count=1, tasks=tasks)
     assert flight.done == ALL
     assert set(flight.lost) == {"far"}
     assert "First waypoint too far away: 1200m, 900 max" in flight.lost["far"]
     assert flight.states["r_0"].state == HOME
+
+
+@KINDS
+def test_f07_and_h04_with_parameters_that_are_read_nothing_is_flown_that_is_refused(kind):
+    near = tuple(Task(id=f"n_{k}", position=(20.0, 6.0 * k, 10.0)) for k in range(4))
+    tasks = (*FAR[:2], *near, Task(id="far", position=(1200.0, 0.0, 10.0)))
+    faults = {"r_0": Faults(fence_m=40.0), "r_1": Faults(fence_m=900.0)}
+    flight = fly(faults, tasks=tasks, kind=kind)
+    name = "GF_MAX_HOR_DIST" if kind is PX4 else "FENCE_RADIUS"
+    assert flight.done == {"t_0", "t_1", *(task.id for task in near)}
+    assert flight.fleet.faults == []
+    first = next(event.time_s for event in flight.events if event.kind == "sets_out")
+    refused = [event for event in flight.events if event.kind == "task_refused"]
+    assert all(event.time_s <= first for event in refused)  # before anything arms
+    assert flight.refused_by("r_0") == {"t_0", "t_1", "far"}
+    assert flight.refused_by("r_1") == {"far"}
+    assert f"1200 m from home; expected at most 900 m by the autopilot's {name}" in flight.lost["far"]
+
+
+def test_a_first_way_point_that_is_too_far_by_a_parameter_is_refused_before_take_off():
+    tasks = (*FAR, Task(id="far", position=(1200.0, 0.0, 10.0)))
+    flight = fly(Faults(first_item_m=900.0), count=1, tasks=tasks)
+    assert flight.done == ALL
+    assert "expected at most 900 m by the autopilot's MIS_DIST_1WP" in flight.lost["far"]
+    assert flight.fleet.faults == []

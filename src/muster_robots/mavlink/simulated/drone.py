@@ -251,6 +251,15 @@ class SimulatedAutopilot:
         result = mavlink.MAV_RESULT_UNSUPPORTED if handler is None else handler(message)
         self._say("command_ack", message.command, result)
 
+    def _on_param_request_read(self, message: Message) -> None:
+        fence_m, first_m = self.faults.fence_m or 0.0, self.faults.first_item_m or 0.0
+        ardupilot = {"FENCE_ENABLE": 1.0, "FENCE_TYPE": 2.0, "FENCE_RADIUS": fence_m, "FENCE_ALT_MAX": 100.0}
+        px4 = {"GF_MAX_HOR_DIST": fence_m, "GF_MAX_VER_DIST": 0.0, "MIS_DIST_1WP": first_m}
+        known = px4 if self.kind is PX4 else ardupilot
+        if message.param_id in known and not self.faults.mute_parameters:
+            value = known[message.param_id]
+            self._say("param_value", message.param_id.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32, len(known), 0)
+
     def _set_mode(self, message: Message) -> int:
         wide = self.kind is PX4
         wanted = int(message.param2) << 16 | int(message.param3) << 24 if wide else int(message.param2)

@@ -42,6 +42,8 @@ class Faults:
     fence_m, first_item_m : float or None
         Distance from home beyond which a mission is refused (PX4: GF_MAX_HOR_DIST); the same of its first way point
         (PX4: MIS_DIST_1WP).
+    mute_parameters : bool
+        Requests for parameters are not answered: a drone says at the start of a mission what it refuses.
     pilot_at_s, pilot_for_s : float
         A pilot takes over by a stick mode, and leaves the drone in the hold mode afterwards.
     no_sticks : bool
@@ -77,6 +79,7 @@ class Faults:
     breach_at_s: float | None = None
     breach_text_at_s: float | None = None
     breach_for_s: float = math.inf
+    mute_parameters: bool = False
     fence_m: float | None = None
     first_item_m: float | None = None
     pilot_at_s: float | None = None
