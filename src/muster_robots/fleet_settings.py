@@ -25,6 +25,7 @@ from muster.mission.value_types import (
     refuse,
 )
 from muster.motion.avoidance_names import AUTO, AVOIDANCE
+from muster_robots.custody import CustodyLimits
 
 _POSES = r"(?=.*\{robot\})(?!.*\{robot\}.*\{robot\})/?(\{robot\}|[A-Za-z])(\w|\{robot\})*(/(\w|\{robot\})+)*"
 _WAIT = Number(minimum=0.0, maximum=1e6)
@@ -153,11 +154,33 @@ class FlightSettings(Settings):
         Share(above=0.0, below=1.0), "battery level below which a drone returns", unit="share", default=0.25
     )
     link_lost_s: float = spec(
-        Number(above=0.0), "time without a heartbeat after which the link counts as lost", default=5.0, option=""
+        Number(above=0.0),
+        "time without any message after which a drone is silent; shorter gaps change nothing",
+        default=10.0,
+    )
+    silences: int = spec(
+        Whole(),
+        "silences and unanswered commands within two minutes after which a drone is out for good",
+        default=5,
+    )
+    absent_s: float = spec(
+        Number(minimum=0.0),
+        "how long tasks that nobody else does wait for a drone that is silent, or that somebody else has",
+        default=60.0,
+    )
+    released_s: float = spec(
+        Number(above=0.0),
+        "how long a drone must hover after a stick mode before it is Muster's again",
+        default=5.0,
     )
     far_m: float = spec(
         Number(above=0.0), "how far from its start in the mission a drone may stand", default=20.0, option=""
     )
+
+    @property
+    def custody_limits(self) -> CustodyLimits:
+        """The limits of the custody of each drone."""
+        return CustodyLimits(silent_after_s=self.link_lost_s, troubles=self.silences, released_s=self.released_s)
 
 
 @record
@@ -166,7 +189,8 @@ class MavlinkSettings(FlightSettings):
 
     endpoints: Mapping[str, str] = spec(
         Table(Text(), "a mapping from each robot to its endpoint, such as udp:0.0.0.0:14550"),
-        "how each robot is reached: udp:HOST:PORT (listens), udpout:HOST:PORT (calls), serial:DEVICE[:BAUD]; #SYSTEM "
+        "how each robot is reached: udp:HOST:PORT (listens), udpout:HOST:PORT or tcp:HOST:PORT (call), "
+        "serial:DEVICE[:BAUD]; #SYSTEM "
         "after it, of several on it",
         option="--endpoint",
         metavar="ROBOT=ENDPOINT",

@@ -49,6 +49,7 @@ DATA = {
     "twice": {"task": "t_0", "robots": ["r_0", "r_1"]},
     "robot_fails": {"robot": "r_1", "reason": "its battery is empty"},
     "robot_silent": {"robot": "r_1", "goes_on": True},
+    "robot_suspended": {"robot": "r_1", "reason": "pilot: mode POSCTL"},
     "robot_stuck": {"robot": "r_1", "reason": "no progress"},
     "robot_removed": {"robot": "r_1", "reason": "a person took it away"},
     "robot_moved": {"robot": "r_1", "position": [4.0, 5.0]},

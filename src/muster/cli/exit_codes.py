@@ -49,7 +49,7 @@ class Ending(Enum):
     )
     TASKS_LOST = (
         exits.TASKS_LOST,
-        "real robots are safe, and tasks were lost",
+        "no real robot moves or is armed; tasks were lost, or a robot has crashed",
         "`fly`, `ros`, `ros2`, `run`",
         "lost",
         "run `ended`, `tasks_lost` in its report",

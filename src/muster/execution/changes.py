@@ -139,6 +139,7 @@ class Changes:
             return
         name, at_work = robot.robot.id, robot.activity is Activity.WORKING
         robot.out_at = robot.position
+        robot.note_unheard()
         broken = stop_work(self.crew, self.ledger, robot.route[0], now) if at_work else ()
         robot.stop(now)
         robot.calls = []

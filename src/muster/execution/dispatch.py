@@ -463,6 +463,18 @@ class Dispatch:
         used = self._used(robots[0])
         self._emit(Ends(task=task, robot=robots[0], team=_team(robots), used=used, parts=parts, usage=usage))
 
+    def end_unheard(self, state: RobotState) -> None:
+        """Count a task that a robot has done while it was not heard, unless others are at it or have done it."""
+        task, robot = state.take_done_unheard(), state.robot.id
+        ledger = self._ledger
+        if not task or not ledger.is_open(task) or ledger.at_work(task) or not ledger.may_begin(task):
+            return
+        usage = state.usage_to_task, state.used - state.used_before
+        state.used_before = state.used
+        self._emit(Arrives(robot=robot, task=task, used=state.used))
+        self._begin(task, [state], (robot,))
+        self._emit(Ends(task=task, robot=robot, used=state.used, usage=usage))
+
     def _planned_usage(self, state: RobotState, task: str) -> float:
         """What a task costs by the plan in force, from the task before it or from where that plan was made."""
         ahead = self.ahead.get(state.robot.id, {})

@@ -50,10 +50,12 @@ from muster.motion.port import RobotPort
 from muster.state import ExecutionEvent, MissionState, OtherEvent, words
 from muster.state.mission_state import AT_MOST_ONCE
 from muster.state.quantiles import Quantiles
-from muster.state.robot_events import RobotFails, RobotsFree, RobotSilent, RobotStuck, WayClosed
+from muster.state.robot_events import RobotFails, RobotsFree, RobotSilent, RobotStuck, RobotSuspended, WayClosed
 from muster.state.run_events import IMPROVED, EventRefused, MissionEnded, PlanAdopted, Replanned, Resumed
-from muster.state.task_events import DoneElsewhere, Lost, NewTask, WorkBrokenOff
+from muster.state.task_events import DoneElsewhere, Lost, NewTask, TaskRefused, WorkBrokenOff
 
+_ABSENT = (RobotSilent.kind, RobotSuspended.kind)
+"""Kinds of the events after which a robot takes no part for a while, and takes part again by itself."""
 MUCH_LONGER, MUCH_LONGER_M = 0.25, 2.0
 """Share of a way, taken as longer by some metres, by which another is longer so that the rest is planned again."""
 
@@ -143,6 +145,7 @@ class Executor:
         self._observer = NoObserver() if observer is None else observer
         self._asked: list[ExecutionEvent] = []
         leader = NoLeader() if leader is None else leader
+        self._limits = limits or Limits()
         self._changes = Changes(
             mission,
             self.state,
@@ -192,7 +195,7 @@ class Executor:
             self._changes,
             self.traffic,
             self._capacity,
-            limits or Limits(),
+            self._limits,
             self.emit,
             self._ask,
             now,
@@ -309,6 +312,11 @@ class Executor:
         """Have the rest planned again at the next tick, because of something that is known elsewhere."""
         self._ask(cause)
 
+    def refuse(self, robot: str, task: str, reason: str) -> None:
+        """Note that a robot cannot do an open task, as is known before it is sent there: others do it, if they can."""
+        if robot in self.crew and self.ledger.is_open(task) and robot not in self.ledger.refusals.get(task, {}):
+            self._ask(TaskRefused(task=task, robot=robot, reason=reason))
+
     def go_other_ways(self, robots: Collection[str]) -> None:
         """Ways of robots under way turn out to be closed: they go by others, and stop where there are none.
 
@@ -392,8 +400,9 @@ class Executor:
         for state in self.crew.values():
             if (said := state.hear(self.now_s)) is not None:
                 self._observer.on_telemetry(self.now_s, state.robot.id, said)
-                if state.out == RobotSilent.kind:
+                if state.out in _ABSENT and not state.suspended:
                     self._changes.readmit(state, self.now_s)
+                    self._dispatch.end_unheard(state)
                 elif state.out == RobotStuck.kind and moves_again(state):
                     self._changes.readmit(state, self.now_s, "it moves again")
 
@@ -557,7 +566,7 @@ class Executor:
     def _end_if_over(self) -> None:
         if self._on_duty:
             return
-        if self._alone and not self.done and self.idle and not self._may_bring_work:
+        if self._alone and not self.done and self.idle and not (self._may_bring_work or self._waits_for_absent):
             last = max((event.time_s for event in self.events), default=self.begun_s)
             ended_s = max([last, *(state.begun_s for state in self._present if state.done)])
             for task, reason in self.lost().items():
@@ -568,6 +577,12 @@ class Executor:
     def _may_bring_work(self) -> bool:
         cut_off = any(state.cut_off for state in self._present)
         return self._script.may_bring_work(open_tasks=bool(self.ledger.open), cut_off=cut_off)
+
+    @property
+    def _waits_for_absent(self) -> bool:
+        """Whether tasks are left, and a robot that may come back is not gone for long."""
+        absent = [state.known.out_s for state in self.crew.values() if state.out in _ABSENT]
+        return bool(self.ledger.open) and self.now_s < max(absent, default=-math.inf) + self._limits.absent_for_s
 
     @property
     def _worked(self) -> list[RobotState]:

@@ -34,12 +34,15 @@ class FinalState:
         the last that it reported, metres in the map frame; None if it reported none.
     moving
         whether it flies or drives, or did when it was last heard.
+    crashed
+        whether it fell, as far as is known: somebody has to look after it.
     """
 
     robot: str
     state: str
     position: Place | None
     moving: bool
+    crashed: bool = False
 
     def __str__(self) -> str:
         if self.position is None:

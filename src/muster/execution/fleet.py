@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from muster.mission.model import Event
+from muster.execution.robots.monitor import Limits
+from muster.mission.model import Event, Mission
 from muster.motion.port import RobotPort
 
 
@@ -28,6 +29,17 @@ def has_simulated_time(fleet: Fleet) -> bool:
     The clock of a mission is the wall clock otherwise.
     """
     return bool(getattr(fleet, "simulated_time", False))
+
+
+def limits_of(fleet: Fleet) -> Limits:
+    """Return how long what may last with a fleet, by its attribute `limits`; the defaults where it has none."""
+    return getattr(fleet, "limits", None) or Limits()
+
+
+def refusals_of(fleet: Fleet, mission: Mission) -> list[tuple[str, str, str]]:
+    """Return which robots of a fleet cannot do which tasks, and why, by its method `refusals`, if it has one."""
+    refusals = getattr(fleet, "refusals", None)
+    return [] if refusals is None else list(refusals(mission))
 
 
 def is_paused(fleet: Fleet) -> bool:

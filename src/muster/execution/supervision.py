@@ -21,6 +21,7 @@ from muster.state.robot_events import (
     RobotSilent,
     RobotStandsAside,
     RobotStuck,
+    RobotSuspended,
     TrafficJam,
 )
 from muster.state.task_events import TaskRefused
@@ -111,10 +112,12 @@ class Supervisor:
         self._break_jams(now)
         self._break_standstill(now)
         for state in self._present:
-            if is_silent(state, now, self.limits):
-                self.changes.exclude(state, RobotSilent, now)
-            elif state.refused and state.activity in MOVING:
+            if state.refused and state.activity in MOVING:
                 self._give_up(state, state.refused, now)
+            elif state.suspended:
+                self.changes.exclude(state, RobotSuspended, now, state.suspended)
+            elif is_silent(state, now, self.limits):
+                self.changes.exclude(state, RobotSilent, now)
             elif (broken := self._broken_before(state)) is not None:
                 self._give_way_to_broken(state, broken, now)
             elif state.activity is Activity.IDLE and self.leader.makes_no_room(state.robot.id):

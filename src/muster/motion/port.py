@@ -97,6 +97,11 @@ class Telemetry:
     left_m
         metres that it has still to go to the next way point that is no `via`, by its own navigation; None where that
         does not say.
+    suspended
+        why it takes no part for now, by its bridge: a pilot or a failsafe of its own has it; empty while it takes part.
+    carried_out
+        the number of an order that was replaced while the robot was not heard, and how many of its way points the robot
+        has passed all the same; None where there is no such order.
     """
 
     time_s: float
@@ -111,6 +116,8 @@ class Telemetry:
     refused: str = ""
     waits_for: str | None = None
     left_m: float | None = None
+    suspended: str = ""
+    carried_out: tuple[int, int] | None = None
 
     @property
     def energy_left(self) -> float | None:

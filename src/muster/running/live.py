@@ -22,7 +22,7 @@ from muster.execution import (
     travel_of,
     way_of,
 )
-from muster.execution.fleet import Fleet, has_simulated_time, is_paused, reason_of
+from muster.execution.fleet import Fleet, has_simulated_time, is_paused, limits_of, reason_of, refusals_of
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
@@ -189,9 +189,12 @@ class Live:
             now=self._fleet.time_s,
             state=state,
             standing=self._standing,
+            limits=limits_of(fleet),
             on_doors=lambda closed: None if manager is None else manager.close(closed),
             leader=manager,
         )
+        for robot, task, reason in refusals_of(fleet, mission):
+            self.executor.refuse(robot, task, reason)
         if manager is not None:
             manager.expect(self.executor.outlook)
         if state is None:

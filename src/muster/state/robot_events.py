@@ -44,6 +44,11 @@ class RobotSilent(RobotOut):
             super().change(state)
 
 
+@happens("robot_suspended", "{robot} takes no part for now", mark=words.ALARM)
+class RobotSuspended(RobotOut):
+    """A robot is heard, and somebody else has it: a pilot, a failsafe of its own. It takes part again afterwards."""
+
+
 @happens("robot_stuck", "{robot} does not get on", mark=words.ALARM)
 class RobotStuck(RobotOut):
     """A robot does not get on."""

@@ -10,6 +10,7 @@ from muster.mission.model import Robot
 OUT = {
     "robot_fails": "failed",
     "robot_silent": "fell silent",
+    "robot_suspended": "was suspended",
     "robot_stuck": "did not get on",
     "robot_removed": "was taken away",
 }

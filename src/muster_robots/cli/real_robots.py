@@ -295,7 +295,7 @@ def reported(
     return exit_code_if(
         (Ending.STILL_MOVING, any(state.moving for state in final_states)),
         (Ending.INTERRUPTED, halt.is_set()),
-        (Ending.TASKS_LOST, lost),
+        (Ending.TASKS_LOST, lost or any(state.crashed for state in final_states)),
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from muster.motion.port import Waypoint
 from muster_robots.follower import Follower
 from muster_robots.mavlink.drone import Drone
-from muster_robots.mavlink.faults import FaultError
+from muster_robots.mavlink.faults import FaultError, Kind
 from muster_robots.mavlink.mission_items import route_of
 from muster_robots.mavlink.position_targets import TURNED_RAD
 from muster_robots.mavlink.procedures import armed, climb, disarmed, started, upload
@@ -34,7 +34,8 @@ def mission(drone: Drone, waypoints: Sequence[Waypoint]) -> Script:
     yield from _armed(drone)
     drone.mode, drone.changing_mode = None, True
     yield from started(drone.target, kind, route.first)
-    drone.route, drone.mode, drone.changing_mode = route, kind.mission, False
+    drone.route, drone.mode = route, kind.mission
+    drone.changing_mode = telemetry.mode != kind.mission  # the start may have been shown by an item that is reached
 
 
 def guided(drone: Drone, waypoints: Sequence[Waypoint]) -> Script:
@@ -86,6 +87,9 @@ def stand_down(drone: Drone) -> Script:
 
 
 def _armed(drone: Drone) -> Script:
+    if drone.telemetry.doubles.are_there and not drone.asked_to_arm:
+        system = drone.target.get_srcSystem()
+        raise FaultError(Kind.ARM_REFUSED, f"two autopilots have the system id {system}; expected one")
     drone.asked_to_arm = True
     if drone.disarming or not drone.telemetry.armed:
         yield from armed(drone.target)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from muster.execution.final_state import FinalState
 from muster.mission.model import Robot
-from muster.motion.port import Waypoint
+from muster.motion.port import Place, Waypoint
+from muster_robots.custody import Holder, Seen, Wants
 from muster_robots.fleet_settings import FlightSettings
 from muster_robots.follower import Follower
 from muster_robots.mavlink.autopilots import Autopilot
@@ -16,6 +17,10 @@ from muster_robots.mavlink.dialect import Message
 from muster_robots.mavlink.mission_items import Route
 from muster_robots.mavlink.telemetry import DroneTelemetry
 
+_SILENT_S = 5.0
+"""Seconds without any message after which a drone is told to be silent at the end."""
+POSITION_LOST_S = 5.0
+"""Seconds without a position after which a drone that is heard does not know where it is."""
 _HOME_M = 3.0
 """A drone that lands this near to its start has returned."""
 
@@ -48,6 +53,8 @@ class Drone:
     route: Route | None = None  # the mission that it flies
     follower: Follower | None = None  # or what leads it
     passed: int = 0
+    home: Place | None = None  # where it stood before it was armed
+    parameters: dict[str, float] = field(default_factory=dict)  # that limit where it may fly, as far as it has them
 
     @property
     def kind(self) -> Autopilot:
@@ -76,6 +83,50 @@ class Drone:
         """Whether it flies, in a mode into which Muster brought it."""
         return self.asked_to_arm and self.telemetry.armed and self.telemetry.mode in self.kind.own_modes
 
+    @property
+    def has_passed_all(self) -> bool:
+        """Whether it has flown the mission that it was given to the end."""
+        return self.route is not None and self.passed >= len(self.route.passed_with)
+
+    def seen(self, *, busy: bool) -> Seen:
+        """What it shows of itself; `busy`: a command is under way, so that any mode that Muster asks for is fine."""
+        telemetry = self.telemetry
+        lost_s = telemetry.heard_s - max(telemetry.place_s, telemetry.heard_since_s)
+        blind = f"no position for {lost_s:.1f} s" if lost_s > POSITION_LOST_S and telemetry.place is not None else ""
+        return Seen(
+            telemetry.heard_s,
+            telemetry.heartbeat_s,
+            self._does,
+            self._holder(busy=busy),
+            telemetry.breach or blind,
+            telemetry.sticks,
+        )
+
+    @property
+    def _does(self) -> Wants | None:
+        kind, mode = self.kind, self.telemetry.mode
+        if not self.telemetry.armed:
+            return Wants.IDLE
+        if self.stands:  # armed on the ground it is about to take off, whatever its mode
+            return Wants.ORDER
+        does = {kind.hold: Wants.HOLD, kind.back: Wants.RETURN, kind.land: Wants.LAND}
+        return does.get(mode, Wants.ORDER if mode in kind.own_modes else None)
+
+    def _holder(self, *, busy: bool) -> Holder:
+        """Who has it, by its mode, and by whether its autopilot says that a failsafe is on."""
+        telemetry, kind = self.telemetry, self.kind
+        if not telemetry.armed or telemetry.mode == self.mode:
+            return Holder.MUSTER
+        if telemetry.mode in kind.stick_modes:
+            return Holder.PILOT
+        if telemetry.critical:
+            return Holder.FAILSAFE
+        if telemetry.mode in kind.own_modes:
+            flies = (self.route is not None or self.follower is not None) and self.mode in (kind.mission, kind.guided)
+            held = flies and telemetry.mode == kind.hold and not self.has_passed_all
+            return Holder.STATION if held else Holder.MUSTER
+        return Holder.MUSTER if busy and telemetry.mode in (kind.back, kind.land) else Holder.STATION
+
     def forget_order(self) -> None:
         """It has no way points any more."""
         self.passed, self.route, self.follower = 0, None, None
@@ -98,26 +149,38 @@ def final_state_of(drone: Drone, now: float) -> FinalState:
     telemetry = drone.telemetry
     if drone.autopilot is None:
         return FinalState(drone.robot.id, "not heard", telemetry.place, moving=False)
-    does = _activity(drone)
-    silent_s = now - telemetry.heartbeat_s
-    if silent_s <= drone.settings.link_lost_s:
-        return FinalState(drone.robot.id, does, telemetry.place, moving=telemetry.armed)
+    does, place = _activity(drone), telemetry.place
+    silent_s = now - telemetry.heard_s
+    if place is not None and not telemetry.is_located:
+        at = ", ".join(f"{c:.2f}" for c in place)
+        does += f"; its position is not known, {telemetry.heard_s - telemetry.place_s:.0f} s before it was ({at})"
+        place = None
+    crashed = telemetry.motors_off_m is not None
+    if silent_s <= _SILENT_S:
+        return FinalState(drone.robot.id, does, place, moving=telemetry.armed, crashed=crashed)
     last = "asked to arm" if drone.stands and not telemetry.armed else does
     state = f"not answering for {silent_s:.0f} s; last seen: {last}"
-    return FinalState(drone.robot.id, state, telemetry.place, moving=telemetry.armed or drone.stands)
+    return FinalState(drone.robot.id, state, place, moving=telemetry.armed or drone.stands, crashed=crashed)
 
 
 def _activity(drone: Drone) -> str:
     telemetry, kind = drone.telemetry, drone.kind
+    if telemetry.motors_off_m is not None:
+        return f"crashed: its motors stopped {telemetry.motors_off_m:.1f} m above its start; not armed"
     if not telemetry.armed:
         if not telemetry.was_up:
             return "did not fly, not armed"
-        home = telemetry.place is not None and math.dist(telemetry.place, telemetry.start) <= _HOME_M
+        home = (
+            telemetry.place is not None
+            and telemetry.is_located
+            and math.dist(telemetry.place, telemetry.start) <= _HOME_M
+        )
         return "returned, landed, not armed" if home else "landed, not armed"
     if telemetry.place is None:
         return "armed, its height not known"
     if not telemetry.up:
         return "on the ground, armed"
     names = {kind.hold: "hovers", kind.back: "returns", kind.land: "lands"}
-    default = "flies" if telemetry.mode in kind.own_modes else "flies under a pilot or a failsafe"
+    by = "a pilot" if telemetry.mode in kind.stick_modes else "a failsafe or another station"
+    default = "flies" if telemetry.mode in kind.own_modes else f"flies under {by}"
     return f"{names.get(telemetry.mode, default)}, armed"

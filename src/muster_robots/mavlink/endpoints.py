@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import socket
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -13,6 +14,9 @@ from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.system.extras import needs_extra
 
 _BAUD = 57600
+_CALL_AGAIN_S = 2.0
+_UNSENT_TCP_BYTES = 65536
+"""A connection for which more waits is hung up: nobody reads at its other end."""
 _UNSENT_BYTES = 4096
 """How much waits at the most for a serial line that takes nothing: what is older is of no use any more."""
 
@@ -77,6 +81,73 @@ class UdpLine:
         self._socket.close()
 
 
+class TcpLine:
+    """Calls an address (`tcp:`), such as that of a simulator or of mavlink-router, and calls again where that ends."""
+
+    def __init__(self, host: str, port: int) -> None:
+        self._address = host, port
+        self._socket: socket.socket | None = None
+        self._called_s = -_CALL_AGAIN_S
+        self._unsent = b""
+        try:
+            self._socket = socket.create_connection(self._address, timeout=_CALL_AGAIN_S)
+        except OSError as error:
+            expected = "an address at which MAVLink is served"
+            raise NetworkError(f"tcp:{host}:{port}: {error.strerror or error}; expected {expected}") from None
+        self._socket.setblocking(False)
+
+    def read(self) -> Iterator[tuple[Peer, bytes]]:
+        if self._socket is None:
+            self._call_again()
+        while self._socket is not None:
+            try:
+                data = self._socket.recv(65535)
+            except BlockingIOError:
+                return
+            except OSError:
+                data = b""
+            if not data:  # the other end is gone
+                self._hang_up()
+                return
+            yield None, data
+
+    def write(self, data: bytes, peer: Peer | None) -> None:
+        if self._socket is None:
+            return
+        self._unsent += data
+        try:
+            self._unsent = self._unsent[self._socket.send(self._unsent) :]
+        except BlockingIOError:
+            if len(self._unsent) > _UNSENT_TCP_BYTES:
+                self._hang_up()
+        except OSError:
+            self._hang_up()
+
+    def close(self) -> None:
+        self._hang_up()
+
+    def _hang_up(self) -> None:
+        if self._socket is not None:
+            self._socket.close()
+        self._socket, self._unsent, self._called_s = None, b"", time.monotonic()
+
+    def _call_again(self) -> None:
+        """Call again, without waiting: whether somebody answers is seen when something is read."""
+        if time.monotonic() < self._called_s + _CALL_AGAIN_S:
+            return
+        self._called_s = time.monotonic()
+        made = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        made.setblocking(False)
+        try:
+            made.connect(self._address)
+        except BlockingIOError:
+            pass
+        except OSError:
+            made.close()
+            return
+        self._socket = made
+
+
 class SerialLine:
     """A telemetry radio or a cable, by pyserial."""
 
@@ -118,7 +189,7 @@ class SerialLine:
 
 
 def endpoint_of(text: str) -> Endpoint:
-    """What an endpoint names: `udp:HOST:PORT`, `udpout:HOST:PORT`, `serial:DEVICE[:BAUD]`, each with `#SYSTEM` or not.
+    """What an endpoint names: `udp:`, `udpout:` or `tcp:HOST:PORT`, `serial:DEVICE[:BAUD]`, each with `#SYSTEM` or not.
 
     Raises
     ------
@@ -143,6 +214,9 @@ def line_to(text: str) -> Line:
     NetworkError
         if it cannot be opened.
     """
+    tcp = re.fullmatch(r"tcp:([^:]+):(\d+)", text)
+    if tcp and 0 < int(tcp[2]) < 65536:
+        return TcpLine(tcp[1], int(tcp[2]))
     udp = re.fullmatch(r"(udp|udpin|udpout):([^:]+):(\d+)", text)
     if udp and 0 < int(udp[3]) < 65536:
         return UdpLine(udp[2], int(udp[3]), listens=udp[1] != "udpout")
@@ -150,5 +224,6 @@ def line_to(text: str) -> Line:
     if wire:
         return SerialLine(wire[1], int(wire[2] or _BAUD))
     raise ParameterError(
-        f"endpoint: {text!r}; expected udp:HOST:PORT (listens), udpout:HOST:PORT (calls) or serial:DEVICE[:BAUD]"
+        f"endpoint: {text!r}; expected udp:HOST:PORT (listens), udpout:HOST:PORT or tcp:HOST:PORT (call), "
+        "or serial:DEVICE[:BAUD]"
     )

@@ -1,13 +1,15 @@
-"""Detects faults of one drone that are not answers to requests; each has a name."""
+"""Detects faults of one drone that are not answers to requests, and have nothing to do with who has it."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from muster_robots.mavlink.drone import Drone
 from muster_robots.mavlink.faults import FaultError, Kind
 
-_TWICE = 2  # one heartbeat in another mode may be older than the mode that was asked for
+_LOW_S = 2.0
+"""Seconds for which a battery must be low: its voltage sags while a drone climbs."""
 
 
 @dataclass
@@ -18,59 +20,40 @@ class FaultDetector:
     ----------
     drone
         the drone.
-    astray
-        how many heartbeats in a row have shown it in a mode that Muster did not choose.
     """
 
     drone: Drone
-    astray: int = 0
+    _low_since_s: float = math.inf
 
     def check_clock(self, now: float) -> None:
-        """A link that is lost; and of a drone that was asked to arm a fence that is breached, a battery that is low."""
-        drone = self.drone
-        silence = now - drone.telemetry.heartbeat_s
-        if silence > drone.settings.link_lost_s:
-            raise FaultError(Kind.LINK_LOST, f"no heartbeat for {silence:.1f} s")
-        if drone.asked_to_arm:
-            if drone.telemetry.breach:
-                raise FaultError(Kind.FENCE_BREACHED, drone.telemetry.breach)
+        """Raise `FaultError` if the battery of a drone that was asked to arm is low."""
+        if not self.drone.asked_to_arm:
+            return
+        if not self._low_in_words():
+            self._low_since_s = math.inf
+        elif self.drone.stands or now >= self._low_since_s + _LOW_S:
             self.require_charge()
+        else:
+            self._low_since_s = min(now, self._low_since_s)
 
     def require_charge(self) -> None:
-        left, least = self.drone.telemetry.battery, self.drone.settings.low_battery
-        if left is not None and left < least:
-            raise FaultError(Kind.LOW_BATTERY, f"{left:.0%} left; expected {least:.0%}")
-
-    def require_nobody_flies_it(self) -> None:
-        """A drone that is armed in a mode that is none of Muster's has a pilot."""
-        if self.drone.telemetry.armed and self.drone.telemetry.mode not in self.drone.kind.own_modes:
-            raise FaultError(Kind.TAKEN_OVER, self._mode_in_words())
+        """Raise `FaultError` if the battery is low."""
+        if words := self._low_in_words():
+            raise FaultError(Kind.LOW_BATTERY, words)
 
     def check_heartbeat(self) -> None:
-        """A drone that should fly and is not armed, or in a mode that Muster did not choose.
-
-        Somebody else flies it then: the pilot, or the autopilot's own failsafe.
-        """
+        """Raise `FaultError` if a drone that should fly is not armed."""
         drone, kind = self.drone, self.drone.kind
         flies = drone.telemetry.was_up or drone.route is not None or drone.follower is not None
-        if flies and not drone.telemetry.armed and drone.mode not in (kind.back, kind.land):
-            raise FaultError(Kind.DISARMED, drone.telemetry.text or "it says that it is not armed")
-        over = drone.route is not None and drone.passed >= len(drone.route.passed_with)
-        self._count(
-            drone.mode is None or drone.telemetry.mode == drone.mode or (over and drone.telemetry.mode == kind.hold)
-        )
+        if not flies or drone.telemetry.armed or drone.mode in (kind.back, kind.land):
+            return
+        fell_m = drone.telemetry.motors_off_m
+        if fell_m is not None:
+            raise FaultError(Kind.DISARMED, f"its motors stopped {fell_m:.1f} m above its start")
+        if drone.telemetry.was_up:
+            raise FaultError(Kind.LANDED, "not on Muster's command")
+        raise FaultError(Kind.DISARMED, "it says that it is not armed")
 
-    def check_heartbeat_meanwhile(self) -> None:
-        """The same while modes are being changed: then any that Muster asks for is fine."""
-        kind = self.drone.kind
-        self._count(
-            not self.drone.telemetry.armed or self.drone.telemetry.mode in (*kind.own_modes, kind.back, kind.land)
-        )
-
-    def _count(self, fine: bool) -> None:
-        self.astray = 0 if fine else self.astray + 1
-        if self.astray >= _TWICE:
-            raise FaultError(Kind.TAKEN_OVER, self._mode_in_words())
-
-    def _mode_in_words(self) -> str:
-        return f"mode {self.drone.telemetry.mode:#x}; {self.drone.telemetry.text}".rstrip("; ")
+    def _low_in_words(self) -> str:
+        left, least = self.drone.telemetry.battery, self.drone.settings.low_battery
+        return f"{left:.0%} left; expected {least:.0%}" if left is not None and left < least else ""

@@ -9,14 +9,17 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from muster.execution.final_state import FinalState
 from muster.execution.fleet import Failure
+from muster.execution.robots.monitor import Limits
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.system.clock import Clock, SystemClock
 from muster.mission.value_types import shown
+from muster.motion import actions
+from muster.motion.actions import Impossible
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 from muster_robots.fleet_settings import FlightSettings
 from muster_robots.mavlink.autopilots import AtEnd
@@ -33,6 +36,8 @@ _LAST_WORDS_S = 1.0, 15.0
 """Seconds, at least and at most, for which final commands are sent to drones that do not confirm, or are silent."""
 _HEARTBEAT_S = 1.5
 """Seconds within which a drone sends a heartbeat."""
+_COMPARED_S = 0.5
+"""Seconds for which messages are compared before anything is ordered: two autopilots may have one system id."""
 _STANDSTILL_S, _MOVED_M = 20.0, 3.0
 """A drone that returns or lands and moves less in this time is waited for no longer."""
 
@@ -102,6 +107,11 @@ class MavlinkFleet:
         return self._clock.now() - self._begun_s
 
     @property
+    def limits(self) -> Limits:
+        """How long a drone may be silent, and how long the mission waits for one that is absent."""
+        return Limits(silent_after_s=self._settings.link_lost_s, absent_for_s=self._settings.absent_s)
+
+    @property
     def faults(self) -> list[Fault]:
         """What went wrong so far, in order of time."""
         found = [fault for session in self.sessions.values() for fault in session.faults]
@@ -118,6 +128,7 @@ class MavlinkFleet:
             if one is none that Muster flies, or stands far from where the mission says, or is not alone on its line.
         """
         self._listen_until(self.time_s + within_s, lambda drone: drone.located)
+        self._listen_until(self.time_s + _COMPARED_S, lambda drone: drone.autopilot is None)
         for name, session in self.sessions.items():
             self._require_one(name, within_s)
             if not session.drone.located:
@@ -125,8 +136,26 @@ class MavlinkFleet:
                     f"{name}: no position within {within_s:g} s; expected a drone that knows where it is"
                 )
             self._require_near(session.drone)
+        self._read_limits()
         if self._speaker is not None:
             self._speaker.start()
+
+    def _read_limits(self) -> None:
+        """Read what limits each drone by the parameters of its autopilot, before it gets an order."""
+        self._tell_all(Session.read_limits)
+        while any(session.busy for session in self.sessions.values()):
+            self._go_on()
+
+    def refusals(self, mission: Mission) -> Iterator[tuple[str, str, str]]:
+        """For each task that an autopilot would refuse to fly: the robot, the task, and why."""
+        for robot in mission.robots:
+            session = self.sessions[robot.id]
+            for task in mission.tasks if session.drone.parameters else ():
+                doing = actions.plan(task, robot)
+                if not isinstance(doing, Impossible):
+                    flown = session.drone.flown(doing.waypoints)
+                    if why := session.refusal([waypoint.position for waypoint in flown]):
+                        yield robot.id, task.id, f"{Kind.OUTSIDE_FENCE.words}: {why}"
 
     def advance(self, until_s: float) -> Sequence[Event]:
         """Receive and send; reports each drone with a fault once (`robot_fails`). Raises what has ended the thread."""
@@ -144,7 +173,7 @@ class MavlinkFleet:
         self._speak_last_words()
         with self._lock:
             for session in self.sessions.values():
-                session.note_missing_hold()
+                session.note_missing_hold(self.time_s)
 
     def end(self, at_end: AtEnd) -> None:
         """Let every drone that flies, and answers, end its flight: also those that take no part any more."""
@@ -205,7 +234,7 @@ class MavlinkFleet:
             for drone in drones
             if drone.telemetry.armed
             and drone.telemetry.mode in (drone.kind.back, drone.kind.land)
-            and self.time_s < drone.telemetry.heartbeat_s + _STANDSTILL_S
+            and self.time_s < drone.telemetry.heard_s + _STANDSTILL_S
         ]
 
     def _tell_all(self, what: Callable[[Session, float], object]) -> None:
@@ -225,7 +254,7 @@ class MavlinkFleet:
     def _speak_last_words(self) -> None:
         least, most = (self.time_s + seconds for seconds in _LAST_WORDS_S)
         while self.time_s < least or (
-            self.time_s < most and any(session.busy or session.hold_pending for session in self.sessions.values())
+            self.time_s < most and any(session.busy or session.is_pending for session in self.sessions.values())
         ):
             self._go_on()
 
@@ -262,6 +291,11 @@ class MavlinkFleet:
         if link.others:
             found = " and ".join(map(str, [link.system_of(name), *sorted(link.others)]))
             raise ParameterError(f"{name}: systems {found} on {link.name}; expected one, or which: {link.name}#1")
+        if self.sessions[name].drone.telemetry.doubles.are_there:
+            found = f"two autopilots with the system id {link.system_of(name)} on {link.name}"
+            raise ParameterError(
+                f"{name}: {found}; expected an id for each (PX4: MAV_SYS_ID, ArduPilot: SYSID_THISMAV)"
+            )
 
     def _require_near(self, drone: Drone) -> None:
         place, start = drone.telemetry.place, drone.telemetry.start

@@ -125,7 +125,7 @@ def started(target: Message, autopilot: Autopilot, first: int) -> Script:
         over = message.get_type() == "MISSION_CURRENT" and message.mission_state == mavlink.MISSION_STATE_COMPLETE
         return over or message.get_type() == "MISSION_ITEM_REACHED" or flies(message)
 
-    yield from obeyed(target, mavlink.MAV_CMD_MISSION_START, (), under_way, Kind.COMMAND_REFUSED)
+    yield from obeyed(target, mavlink.MAV_CMD_MISSION_START, (), under_way, Kind.START_REFUSED)
 
 
 def upload(target: Message, route: Route) -> Script:

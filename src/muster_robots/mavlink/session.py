@@ -6,16 +6,19 @@ Without `settings.arm` a session says nothing but heartbeats and requests for te
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from muster.mission.errors import ParameterError
 from muster.motion.port import Place, Telemetry, Waypoint
+from muster_robots.custody import Custody, Holder, Standing, Wants
 from muster_robots.mavlink.autopilots import AtEnd, autopilot_of
 from muster_robots.mavlink.commands import guided, into, mission, stand_down
 from muster_robots.mavlink.dialect import Message, mavlink
 from muster_robots.mavlink.drone import Drone
 from muster_robots.mavlink.fault_detection import FaultDetector
-from muster_robots.mavlink.faults import Fault, FaultError, Kind, Reaction
+from muster_robots.mavlink.faults import TEXTS_BEFORE_S, Costs, Fault, FaultError, Kind, Reaction, StatusText
+from muster_robots.mavlink.mission_items import Route
+from muster_robots.mavlink.own_limits import limits_of, read_parameters
 from muster_robots.mavlink.position_targets import EVERY_S, position_target
 from muster_robots.mavlink.procedures import command
 from muster_robots.mavlink.requests import RequestSequence, Script
@@ -23,12 +26,28 @@ from muster_robots.mavlink.requests import RequestSequence, Script
 Fence = Callable[[Place, Sequence[Waypoint]], str]
 """Why a drone may not go from a place through way points; empty if it may."""
 
-_TELEMETRY = (30, 32, 33, 147, 1, 42, 162)  # ATTITUDE, the two places, the two of the battery, MISSION_CURRENT, fence
+_TELEMETRY = (30, 32, 33, 147, 1, 42, 162, 245)
+"""ATTITUDE, the two places, the two of the battery, MISSION_CURRENT, fence, EXTENDED_SYS_STATE."""
 _TELEMETRY_US = 100_000
 _ASK_AGAIN_S = 5.0
-_LET_GO = Kind.TAKEN_OVER, Kind.DISARMED
+_LET_GO = Kind.LANDED, Kind.DISARMED
 """Faults after which Muster sends no command any more."""
+_ANSWERS_S = 2.0
+"""Seconds without any message after which answers are not waited for, until something is heard again."""
+_WANTED: dict[AtEnd, Wants] = {"hold": Wants.HOLD, "return": Wants.RETURN, "land": Wants.LAND}
+_AT_END: dict[Wants, AtEnd] = {wants: at_end for at_end, wants in _WANTED.items()}
+_KIND_OF = {Standing.PILOT: Kind.PILOT, Standing.FAILSAFE: Kind.FAILSAFE, Standing.STATION: Kind.STATION}
+"""Faults of a drone that somebody else has."""
 _REQUESTS = (mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_CMD_REQUEST_MESSAGE)
+
+
+@dataclass
+class UnheardOrder:
+    """An order that was replaced while the drone was not heard, and that it may fly all the same."""
+
+    number: int
+    route: Route
+    passed: int
 
 
 class Session:
@@ -44,19 +63,19 @@ class Session:
 
     def __init__(self, drone: Drone, fence: Fence) -> None:
         self.drone, self.fence = drone, fence
-        self.faults: list[Fault] = []  # after the first, refusals of what it was told because of that, or at the end
-        self._at_end: AtEnd = "hold"  # what a drone that is out is told when it answers
-        self.hold_pending = False  # whether its link was lost, and it was not told to hold since
+        self.custody = Custody(drone.settings.custody_limits)
+        self.faults: list[Fault] = []
+        self.fault: Fault | None = None  # why it takes no part any more; None while it does
+        self._refused = ""  # why it does not carry out its order
+        self._suspended: Fault | None = None  # why it takes no part for now
+        self._unheard: UnheardOrder | None = None
         self._order = 0
+        self._texts_before = 0  # status texts that had arrived when the last command was begun
+        self._silent_since_s = float("-inf")  # time of the last position before a silence
         self._outbox: list[Message] = []
         self._requests: RequestSequence | None = None
         self._fault_detector = FaultDetector(drone)
         self._said_s = self._asked_s = self._streamed_s = float("-inf")
-
-    @property
-    def fault(self) -> Fault | None:
-        """Why it takes no part any more; None while it does."""
-        return self.faults[0] if self.faults else None
 
     @property
     def busy(self) -> bool:
@@ -74,8 +93,10 @@ class Session:
         if telemetry.place is None:
             return None
         place = telemetry.place if drone.height_m is None else (*telemetry.place[:2], 0.0)
+        suspended = "" if self._suspended is None else self._suspended.reason
+        unheard = None if self._unheard is None else (self._unheard.number, self._unheard.passed)
         return Telemetry(
-            telemetry.place_s,
+            self._silent_since_s if self._counts_as_silent else telemetry.heard_s if suspended else telemetry.place_s,
             place,
             telemetry.heading,
             telemetry.velocity,
@@ -83,7 +104,16 @@ class Session:
             self._order,
             drone.passed,
             charge=telemetry.battery,
+            refused=self._refused,
+            suspended=suspended,
+            carried_out=unheard,
         )
+
+    @property
+    def _counts_as_silent(self) -> bool:
+        """Whether it is silent, or has been, and has not shown since that it does what Muster wants."""
+        suspect = self.custody.standing is Standing.SUSPECT and self._suspended is None
+        return self.fault is None and (suspect or self.custody.standing is Standing.SILENT)
 
     def follow(self, waypoints: Sequence[Waypoint], now: float) -> int:
         """Let it pass way points in place of those that it still has.
@@ -96,9 +126,28 @@ class Session:
         if not self.drone.settings.arm:
             raise ParameterError(f"{self.drone.robot.id}: way points; expected none without leave to arm")
         self._take_order()
-        if self.fault is None:
+        self._unheard = None
+        if self.fault is None and self.custody.standing is Standing.OURS:
+            self.custody.want(Wants.ORDER if waypoints else Wants.HOLD)
             self._try(lambda: self._set_out(self.drone.flown(waypoints), now), now)
         return self._order
+
+    def read_limits(self, now: float) -> None:
+        """Ask for the parameters that limit where it may fly; only with leave to arm."""
+        if self.drone.settings.arm and self.drone.autopilot is not None:
+            if not self.drone.telemetry.armed:
+                self.drone.home = self.drone.telemetry.place
+            script = read_parameters(self.drone.target, self.drone.kind, self.drone.parameters)
+            self._requests = RequestSequence(script, self._say, now)
+
+    def refusal(self, places: Sequence[Place]) -> str:
+        """Why places, in the order of flight, are outside the limits of its autopilot; empty if they are not."""
+        drone = self.drone
+        if drone.autopilot is None:
+            return ""
+        limits = limits_of(drone.kind, drone.parameters)
+        home = drone.home or drone.telemetry.start
+        return next((why for limit in limits if (why := limit.refusal(home, places))), "")
 
     def hold(self, now: float) -> int:
         """Let it stay where it is, if it flies, and is ours; on the ground it is not left armed."""
@@ -109,23 +158,35 @@ class Session:
     def end(self, at_end: AtEnd, now: float) -> None:
         """Let it hover, return to where it was armed, or land, if it flies, and is ours.
 
-        A drone that is out is told so as soon as it answers.
+        A drone that is silent, or that somebody else has, is told so as soon as it is heard, and is ours again.
         """
-        self._at_end = at_end
-        if self.drone.autopilot is None:
+        if self.drone.autopilot is None or (self.fault is not None and self.fault.kind in _LET_GO):
             return
-        if self.fault is None:
-            self._requests = None
-            self._try(lambda: self._end_flight(self._final_mode, now), now)
-        elif self._hears(now) and self._may_interrupt(self.fault):
-            self._requests = None
-            self._try(lambda: self._call_back(now), now)
+        if self.fault is not None and not self._may_interrupt(self.fault, at_end):
+            return
+        self.custody.want(_WANTED[at_end])
+        self._requests = None
+        if self.custody.is_heard and (self.fault is None or self._is_left_to_us):
+            self._try(lambda: self._end_flight(now), now)
 
-    def note_missing_hold(self) -> None:
-        """Add to its fault that it did not get the command to hover: it may fly on."""
-        if self.fault is not None and self.hold_pending and self._is_left_to_us:
-            self.faults[0] = replace(self.fault, detail=f"{self.fault.detail}; not told to hover")
-            self.hold_pending = False
+    @property
+    def is_pending(self) -> bool:
+        """Whether it was not told yet what it is to do at last, or has not shown that it does it."""
+        drone = self.drone
+        if drone.autopilot is None or not drone.asked_to_arm or (self.fault and self.fault.kind in _LET_GO):
+            return False
+        seen = drone.seen(busy=self.busy)
+        fits = self.custody.does_what_is_wanted(seen) and not drone.stands
+        return not self.custody.is_heard or (self._is_left_to_us and not fits)
+
+    def note_missing_hold(self, now: float) -> None:
+        """Add to its faults that it did not get the command to hover: it may fly on."""
+        if not self.is_pending or not self._is_left_to_us:
+            return
+        silent_s = now - self.drone.telemetry.heard_s
+        detail = f"nothing heard for {silent_s:.1f} s; not told to hover"
+        if not self.custody.is_heard and not any(fault.detail.endswith("not told to hover") for fault in self.faults):
+            self.faults.append(Fault(now, self.drone.robot.id, Kind.LINK_LOST, detail))
 
     def hear(self, message: Message, now: float) -> None:
         """Take in one message.
@@ -139,10 +200,12 @@ class Session:
             self.drone.autopilot = autopilot_of(message, self.drone.robot.id)
         if self.drone.autopilot is None:
             return
+        self.drone.telemetry.note_heard(now)
         self.drone.telemetry.hear(message, now)
         if message.get_type() == "STATUSTEXT":
-            self._explain_refusal(now)
+            self._add_texts(now)
         self._try(lambda: self._answer(message, now), now)
+        self._try(lambda: self._watch(now), now)
 
     def tick(self, now: float) -> None:
         """Say what is due, and notice what did not come."""
@@ -158,36 +221,109 @@ class Session:
         self._try(lambda: self._go_on(now), now)
 
     def fail(self, kind: Kind, detail: str, now: float) -> None:
-        """Take no part any more, for good, and react by the kind of fault."""
-        texts = self.drone.telemetry.texts if kind.is_refusal else ()
-        fault = Fault(now, self.drone.robot.id, kind, detail, texts)
+        """Note a fault, and react by its kind: the drone is out for good, or its task is, or it takes part later."""
+        if kind is Kind.LANDED and self._suspended is not None:
+            detail = f"{detail}; {self._suspended.reason}"
+        fault = Fault(now, self.drone.robot.id, kind, detail, self._texts_of(kind, now))
         if self.fault is not None:
-            self.hold_pending = self.fault.kind is Kind.LINK_LOST and kind is Kind.NO_ANSWER
             self.faults += [fault] if kind is Kind.COMMAND_REFUSED else []
             return
         self.faults.append(fault)
-        self.hold_pending = kind is Kind.LINK_LOST
+        did_not_obey = kind in (Kind.NO_ANSWER, Kind.COMMAND_REFUSED) and self.drone.telemetry.was_up
+        if kind is Kind.START_REFUSED and self.drone.telemetry.critical:
+            did_not_obey = True
+        if did_not_obey:
+            self.custody.suspect(now)
+        if did_not_obey or kind is Kind.FENCE_BREACHED:
+            self._suspended = fault
+        if kind.costs is Costs.TASK and not did_not_obey:
+            self._refused = fault.reason
+        elif kind.costs is Costs.ROBOT and not did_not_obey:
+            self.fault = fault
+        self._break_off()
+        if kind.reaction is not Reaction.NOTHING:
+            self.custody.want(Wants.RETURN if kind.reaction is Reaction.RETURN else Wants.HOLD)
+            self._end_flight(now)
+
+    def _break_off(self) -> None:
         self.drone.forget_order()
         self._requests = self.drone.mode = None
-        reactions = {Reaction.HOLD: self.drone.kind.hold, Reaction.RETURN: self.drone.kind.back}
-        if kind.reaction in reactions:
-            self._end_flight(reactions[kind.reaction], now)
 
-    def _explain_refusal(self, now: float) -> None:
-        """Add a status text that arrives shortly after a refusal to its fault."""
-        if self.faults and self.faults[-1].awaits_texts(now):
-            self.faults[-1] = replace(self.faults[-1], texts=self.drone.telemetry.texts)
+    def _texts_of(self, kind: Kind, now: float) -> tuple[StatusText, ...]:
+        """The status texts that may give the cause of a fault: of a refusal all since the command."""
+        telemetry = self.drone.telemetry
+        refusal = kind.is_refusal
+        return telemetry.texts_after(self._texts_before) if refusal else telemetry.texts_since(now - TEXTS_BEFORE_S)
+
+    def _add_texts(self, now: float) -> None:
+        """Add a status text that arrives shortly after a fault to it."""
+        if not self.faults or not self.faults[-1].awaits_texts(now):
+            return
+        before, new = self.faults[-1], self.drone.telemetry.texts[-1]
+        pieces = [text for text in before.texts if text.at_s == new.at_s and new.text.startswith(text.text)]
+        known = tuple(text for text in before.texts if text not in pieces)
+        after = self.faults[-1] = replace(before, texts=(*known, new))
+        self.fault = after if self.fault is before else self.fault
+        self._suspended = after if self._suspended is before else self._suspended
+        self._refused = after.reason if self._refused == before.reason else self._refused
+
+    def _watch(self, now: float) -> None:
+        """Compare what it is to do with what it does, and say the former again where that is due."""
+        drone, before = self.drone, self.custody.standing
+        command = self.custody.look(drone.seen(busy=self.busy), now)
+        if (after := self.custody.standing) is not before:
+            self._change_standing(after, now)
+        if command is not None and drone.asked_to_arm and not self.busy and self._may_be_told:
+            self._end_flight(now)
+
+    @property
+    def _may_be_told(self) -> bool:
+        return self.fault is None or self.fault.kind not in _LET_GO
+
+    def _change_standing(self, after: Standing, now: float) -> None:
+        """Its relation to Muster is another: it takes no part for now, or takes part again."""
+        if self.fault is not None:
+            return
+        if after is Standing.OURS:
+            self._suspended = None
+        elif after is Standing.SILENT:
+            self._silent_since_s = self.drone.telemetry.place_s
+        elif after in _KIND_OF:
+            self._suspend(_KIND_OF[after], now)
+        elif self._suspended is None and self.drone.telemetry.breach:
+            self.fail(Kind.FENCE_BREACHED, self.drone.telemetry.breach, now)
+        elif self._suspended is None and (unfit := self.drone.seen(busy=self.busy).unfit):
+            self._suspend(Kind.NO_POSITION, now, unfit)
+        if self.custody.is_worn_out(now):
+            limits = self.custody.limits
+            often = f"silent, or without an answer, more than {limits.troubles} times in {limits.troubles_within_s:g} s"
+            raise FaultError(Kind.LINK_LOST, often)
+
+    def _suspend(self, kind: Kind, now: float, detail: str = "") -> None:
+        """Somebody else has it, or it does not know where it is: it takes no part for now, and keeps its order not."""
+        mode = f"mode {self.drone.kind.name_of_mode(self.drone.telemetry.mode)}"
+        fault = Fault(now, self.drone.robot.id, kind, detail or mode, self._texts_of(kind, now))
+        self.faults.append(fault)
+        self._suspended = fault
+        self._break_off()
+        self.custody.want(Wants.HOLD)
 
     def _take_order(self) -> None:
+        if self.custody.standing is Standing.SILENT and self.drone.route is not None:
+            self._unheard = UnheardOrder(self._order, self.drone.route, self.drone.passed)
         self._order += 1
+        self._refused = ""
         self.drone.forget_order()
 
     def _set_out(self, waypoints: Sequence[Waypoint], now: float) -> None:
         here = self.drone.telemetry.place
         if here is None or not self.drone.located:
             raise FaultError(Kind.NO_ANSWER, "it has not said where it is")
-        self._fault_detector.require_nobody_flies_it()
-        refusal = self.fence(here, waypoints)
+        if self.drone.seen(busy=False).holder is not Holder.MUSTER:
+            self.custody.let_go(self.drone.seen(busy=False))
+            self._change_standing(self.custody.standing, now)
+            return
+        refusal = self.fence(here, waypoints) or self.refusal([waypoint.position for waypoint in waypoints])
         if refusal:
             raise FaultError(Kind.OUTSIDE_FENCE, refusal)
         if not waypoints:
@@ -196,20 +332,16 @@ class Session:
         way = guided if self.drone.settings.offboard else mission
         self._begin(way(self.drone, waypoints), now)
 
-    @property
-    def _final_mode(self) -> int:
-        return self.drone.kind.final_mode(self._at_end)
-
-    def _may_interrupt(self, fault: Fault) -> bool:
+    def _may_interrupt(self, fault: Fault, at_end: AtEnd) -> bool:
         """Whether the reaction to a fault may be broken off: to hover in favour of an end, to return never."""
-        return self._requests is None or (self._at_end != "hold" and fault.kind.reaction is not Reaction.RETURN)
+        return fault.kind.reaction is not Reaction.RETURN and (self._requests is None or at_end != "hold")
 
-    def _end_flight(self, mode: int, now: float) -> None:
-        """Into a mode if it flies under Muster; on the ground it stands down instead."""
+    def _end_flight(self, now: float) -> None:
+        """Into the mode that is wanted if it flies under Muster; on the ground it stands down instead."""
         if self.drone.stands:
             self._begin(stand_down(self.drone), now)
-        elif self.drone.ours:
-            self._begin(into(self.drone, mode), now)
+        elif self.drone.ours and self.custody.wanted in _AT_END:
+            self._begin(into(self.drone, self.drone.kind.final_mode(_AT_END[self.custody.wanted])), now)
 
     @property
     def _is_left_to_us(self) -> bool:
@@ -219,50 +351,39 @@ class Session:
             drone.stands and (not drone.telemetry.armed or drone.telemetry.mode in drone.kind.own_modes)
         )
 
-    def _hears(self, now: float) -> bool:
-        return now - self.drone.telemetry.heartbeat_s <= self.drone.settings.link_lost_s
-
-    def _call_back(self, now: float) -> None:
-        """Let one that has failed end its flight, or stand down: it may still fly what others fly now."""
-        self.hold_pending = False
-        if self.fault is not None and self.fault.kind not in _LET_GO and self._is_left_to_us:
-            self._end_flight(self._final_mode, now)
-
     def _begin(self, script: Script, now: float) -> None:
-        self._fault_detector.astray = 0
-        if not (self.faults and self.faults[-1].awaits_texts(now)):
-            self.drone.telemetry.texts = ()
+        self._texts_before = self.drone.telemetry.texts_heard
         self._requests = RequestSequence(script, self._say, now)
 
     def _answer(self, message: Message, now: float) -> None:
         beats = message.get_type() == "HEARTBEAT" and self.drone.asked_to_arm
         if self._requests is not None:
-            if beats:
-                self._fault_detector.check_heartbeat_meanwhile()
             self._requests.hear(message, now)
             self._requests = None if self._requests.done else self._requests
         elif beats and self.fault is None:
             self._fault_detector.check_heartbeat()
-        elif beats and self.hold_pending:
-            self._call_back(now)
+        if beats and self._requests is None and self.drone.mode == self.drone.telemetry.mode:
+            self.drone.changing_mode = False
         self._see_progress(message)
 
     def _see_progress(self, message: Message) -> None:
         """Items reached: one that is lost is made up for by the next, and one that is repeated changes nothing."""
-        drone = self.drone
-        if drone.route is None:
+        unheard = self._unheard
+        flown: Drone | UnheardOrder = self.drone if unheard is None or self.drone.route is not None else unheard
+        if flown.route is None:
             return
         if message.get_type() == "MISSION_ITEM_REACHED":
-            drone.passed = max(drone.passed, drone.route.passed(message.seq))
+            flown.passed = max(flown.passed, flown.route.passed(message.seq))
         elif message.get_type() == "MISSION_CURRENT":
             over = message.mission_state == mavlink.MISSION_STATE_COMPLETE
-            drone.passed = max(drone.passed, drone.route.passed(len(drone.route.items) if over else message.seq - 1))
+            flown.passed = max(flown.passed, flown.route.passed(len(flown.route.items) if over else message.seq - 1))
 
     def _go_on(self, now: float) -> None:
-        if self._requests is not None:
+        if self._requests is not None and now <= self.drone.telemetry.heard_s + _ANSWERS_S:
             self._requests.tick(now)
             if self._requests.done:
                 self._requests = None
+        self._watch(now)
         if self.fault is None:
             self._fault_detector.check_clock(now)
             self._lead(now)

@@ -28,6 +28,7 @@ _ACTIVITIES = {
     "no_way_to_end": "idle",
     "robot_fails": "out",
     "robot_silent": "out",
+    "robot_suspended": "out",
     "robot_stuck": "out",
     "robot_removed": "out",
     "robot_moved": "idle",

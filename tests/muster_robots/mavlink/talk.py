@@ -25,7 +25,9 @@ def heartbeat(kind=PX4, mode=None, armed=False, **more):
     base = 1 | (128 if armed else 0)
     fields = {"type": 2, "autopilot": known, "custom_mode": kind.ready if mode is None else mode, **more}
     return from_drone(
-        M.MAVLink_heartbeat_message(fields["type"], fields["autopilot"], base, fields["custom_mode"], 4, 3)
+        M.MAVLink_heartbeat_message(
+            fields["type"], fields["autopilot"], base, fields["custom_mode"], more.get("state", 4), 3
+        )
     )
 
 
@@ -60,6 +62,15 @@ class Talk:
         for message in messages:
             self.session.hear(message, self.now)
         return self.taken()
+
+    def beats(self, count=2, **more):
+        """What it is told while it sends heartbeats, one a second, all alike."""
+        said = []
+        for _ in range(count):
+            self.now += 1.0
+            said += self.say(heartbeat(self.kind, **more), position(above=8.0))
+            self.session.tick(self.now)
+        return said + self.taken()
 
     def after(self, seconds):
         self.now += seconds

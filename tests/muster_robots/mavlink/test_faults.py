@@ -12,6 +12,7 @@ from muster.mission.model import Task
 from muster.running.live import carry_out_live
 from muster_robots.mavlink import Kind
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
+from muster_robots.mavlink.faults import Costs
 from muster_robots.mavlink.simulated.faults import Faults
 
 PAGE = Path(__file__).parents[3] / "docs" / "mavlink.md"
@@ -26,20 +27,26 @@ class Case:
     fenced: bool = False
     confusing: bool = False
     how: str = ""
+    settings: dict = field(default_factory=dict)
     offboard: tuple[bool, ...] = (False, True)  # in which ways of flying it can happen
 
 
 CASES = {
-    Kind.LINK_LOST: [Case(Faults(silent_at_s=3))],
+    Kind.LINK_LOST: [Case(Faults(silent_at_s=3), settings={"silences": 0})],
     Kind.ITEM_REJECTED: [Case(Faults(reject_item=1), offboard=(False,))],
+    Kind.START_REFUSED: [Case(Faults(refuse_start=True), offboard=(False,))],
     Kind.ARM_REFUSED: [Case(Faults(refuse_arm=True))],
-    Kind.COMMAND_REFUSED: [Case(Faults(refuse_start=True))],
+    Kind.COMMAND_REFUSED: [Case(Faults(refuse_start=True), offboard=(True,))],
     Kind.NO_ANSWER: [Case(Faults(mute=True))],
     Kind.LOW_BATTERY: [Case(Faults(low_battery_at_s=3))],
     Kind.FENCE_BREACHED: [Case(Faults(breach_at_s=3)), Case(Faults(breach_text_at_s=3), how="by text")],
     Kind.OUTSIDE_FENCE: [Case(fenced=True)],
-    Kind.TAKEN_OVER: [Case(Faults(pilot_at_s=3))],
+    Kind.PILOT: [Case(Faults(pilot_at_s=3))],
+    Kind.FAILSAFE: [Case(Faults(gps_lost_at_s=3, gps_lost_for_s=4))],
+    Kind.STATION: [Case(Faults(rtl_at_s=6))],
+    Kind.NO_POSITION: [Case(Faults(no_position_at_s=3, no_position_for_s=8))],
     Kind.NOT_UNDERSTOOD: [Case(confusing=True)],
+    Kind.LANDED: [Case(Faults(gps_lost_at_s=1.2))],
     Kind.DISARMED: [Case(Faults(disarm_at_s=3))],
 }
 
@@ -97,13 +104,17 @@ def confuse(telemetry):
     telemetry.hear = hear
 
 
+EVENTS = {Costs.ROBOT: "robot_fails", Costs.TASK: "task_refused", Costs.PAUSE: "robot_suspended"}
+"""What is told of a fault, by what it costs."""
+
+
 @pytest.mark.long(keep=8)
 @pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
 @pytest.mark.parametrize(("fault", "case", "offboard"), EVERY)
 def test_each_fault_ends_as_the_table_says(kind, fault, case, offboard):
     there, heard = mission(2, FAR), []
     sky = Sky(there, kind, {"r_0": case.faults})
-    fleet = sky.fleet(there, offboard=offboard)
+    fleet = sky.fleet(there, offboard=offboard, **case.settings)
     if case.fenced:
         fleet.sessions["r_0"].fence = lambda here, waypoints: "way to (1, 2); expected none"
     if case.confusing:
@@ -114,22 +125,26 @@ def test_each_fault_ends_as_the_table_says(kind, fault, case, offboard):
     sky.close()
 
     drone, row = sky.drones["r_0"], rows()[fault.words]
-    assert [(found.robot, found.kind) for found in fleet.faults] == [("r_0", fault)]
+    assert {found.robot for found in fleet.faults} == {"r_0"}
+    assert fault in [found.kind for found in fleet.faults]
     allowed = re.split(r"[,;] or ", row["the drone"])
     assert state(drone, kind) in allowed, (state(drone, kind), hex(drone.mode), drone.flight)
-    out = [event for event in heard if event.kind == "robot_fails"]
-    assert [event.data["robot"] for event in out] == ["r_0"]
-    assert out[0].data["reason"].startswith(f"{fault.words}: ")
+    assert row["execution"] == fault.costs.value
+    told = EVENTS[fault.costs]
+    out = [event for event in heard if event.kind == told]
+    assert {event.data["robot"] for event in out} == {"r_0"}
+    assert all(event.data["reason"].startswith(f"{fault.words}: ") for event in out)
     assert set(report.tasks_done) == {"t_0", "t_1"}
-    assert {task.robot for task in report.tasks} == {"r_1"}
+    if fault.costs is not Costs.PAUSE:
+        assert {task.robot for task in report.tasks} == {"r_1"}
     assert sky.drones["r_1"].armed
     causes = [cause for event in heard if event.kind == "replanned" for cause in event.data["causes"]]
-    assert "robot_fails" in [cause["kind"] for cause in causes]
+    assert told in [cause["kind"] for cause in causes]
 
 
 def test_a_fault_is_told_only_what_the_table_says():
     """`nothing` is nothing: after its fault a drone hears heartbeats alone."""
-    for fault, faults in ((Kind.TAKEN_OVER, Faults(pilot_at_s=3)), (Kind.DISARMED, Faults(disarm_at_s=3))):
+    for fault, faults in ((Kind.PILOT, Faults(pilot_at_s=3)), (Kind.DISARMED, Faults(disarm_at_s=3))):
         there = mission(1, (Task(id="t", position=(80.0, 0.0, 10.0)),))
         sky = Sky(there, PX4, {"r_0": faults})
         fleet = sky.fleet(there)

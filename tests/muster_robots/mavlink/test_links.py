@@ -5,6 +5,7 @@ import os
 import pty
 import socket
 import tty
+from dataclasses import replace
 
 import pytest
 from tests.muster_robots.mavlink.drones import ORIGIN, Sky, mission
@@ -12,9 +13,11 @@ from tests.muster_robots.mavlink.drones import ORIGIN, Sky, mission
 import muster
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.system.clock import VirtualClock
+from muster.motion.port import Waypoint
 from muster.running.live import carry_out_live
+from muster_robots.custody import Standing
 from muster_robots.fleet_settings import FlightSettings
-from muster_robots.mavlink import MavlinkFleet
+from muster_robots.mavlink import MavlinkFleet, endpoints
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
 from muster_robots.mavlink.dialect import Codec
 from muster_robots.mavlink.endpoints import Endpoint, endpoint_of, line_to
@@ -167,11 +170,86 @@ def test_a_drone_on_a_serial_line(kind):
     os.close(ours)  # unplugged
     drone.receive = lambda data: None
     fleet._wait = clock.advance
-    events = fleet.advance(fleet.time_s + 5.0)
-    assert [event.robot_fails for event in events] == ["r_0"]
-    assert events[0].reason.startswith("link lost: no heartbeat")
+    fleet.advance(fleet.time_s + 20.0)
+    assert fleet.sessions["r_0"].custody.standing is Standing.SILENT
+    assert fleet.ports["r_0"].telemetry().time_s < fleet.time_s - 19.0
     fleet.close()
     os.close(theirs)
+
+
+@pytest.mark.parametrize("apart_m", [6.0, 0.0], ids=["by their places", "by their clocks"])
+def test_two_autopilots_with_one_system_id_are_noticed_before_anything_is_ordered(apart_m):
+    there = mission(2)
+    sky = Router(there)
+    one, other = sky.drones.values()
+    other.system = one.system
+    other._codec = Codec(one.system, 1)
+    if not apart_m:
+        other.origin = one.origin
+        advance = other.advance
+        other.advance = lambda now: advance(now + 30.0)  # it was switched on earlier
+    alone = replace(there, robots=there.robots[:1])
+    fleet = MavlinkFleet(alone, {"r_0": sky.line}, FlightSettings(arm=True), clock=sky.clock, wait=sky.wait)
+    with pytest.raises(ParameterError, match=r"r_0: two autopilots with the system id 1 on udpout:.*; expected an id"):
+        fleet.connect(5.0)
+    fleet.close()
+    sky.close()
+    assert not any(message.get_type().startswith("MISSION") for message in one.heard)
+
+
+class Served(Sky):
+    """A drone that is served over TCP, one caller at a time."""
+
+    def __init__(self, there):
+        super().__init__(there)
+        for end in self.ends.values():
+            end.close()
+        self.server, self.caller = socket.create_server(("127.0.0.1", 0)), None
+        self.server.setblocking(False)
+        self.ends = {"": self.server}
+
+    @property
+    def endpoints(self):
+        return {"r_0": f"tcp:127.0.0.1:{self.server.getsockname()[1]}"}
+
+    def hang_up(self):
+        self.caller.close()
+        self.caller = None
+
+    def wait(self, seconds):
+        self.clock.advance(seconds)
+        with contextlib.suppress(BlockingIOError):
+            self.caller, _ = self.server.accept()
+            self.caller.setblocking(False)
+        said = self.drones["r_0"].advance(self.clock.now())
+        if self.caller is not None:
+            with contextlib.suppress(BlockingIOError):
+                self.drones["r_0"].receive(self.caller.recv(65535))
+            for packet in said:
+                self.caller.send(packet)
+
+
+def test_a_drone_over_tcp_flies_on_when_the_connection_was_lost(monkeypatch):
+    monkeypatch.setattr(endpoints, "_CALL_AGAIN_S", 0.1)
+    there = mission(1)
+    sky = Served(there)
+    fleet = sky.fleet(there)
+    fleet.ports["r_0"].send([Waypoint((40.0, 0.0, 10.0))])
+    fleet.advance(fleet.time_s + 5.0)
+    sky.hang_up()
+    report = carry_out_live(there, muster.solve(there, iterations=50), fleet)
+    fleet.close()
+    sky.hang_up()
+    sky.close()
+    assert len(report.tasks_done) == 2
+    assert fleet.faults == []
+
+
+def test_a_drone_over_tcp_that_is_not_there_is_said_in_a_line():
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    with pytest.raises(NetworkError, match=rf"tcp:127.0.0.1:{port}: .*; expected an address at which MAVLink"):
+        line_to(f"tcp:127.0.0.1:{port}")
 
 
 def test_a_serial_line_that_takes_nothing_keeps_the_newest_in_whole_packets():

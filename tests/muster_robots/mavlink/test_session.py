@@ -16,6 +16,7 @@ from tests.muster_robots.mavlink.talk import (
 
 from muster.mission.errors import ParameterError
 from muster.motion.port import Waypoint
+from muster_robots.custody import Standing
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4, autopilot_of
 from muster_robots.mavlink.faults import Kind
 
@@ -54,10 +55,10 @@ def test_ardupilot_has_home_first_and_is_armed_in_guided():
 
 
 def test_what_is_not_answered_is_said_again_and_again_then_given_up():
-    talk = Talk(link_lost_s=100)
+    talk = Talk()
     said = [*talk.fly((10.0, 0.0, 8.0))]
     for _ in range(30):
-        said += talk.after(0.5)
+        said += [*talk.say(position()), *talk.after(0.5)]
     assert [message.get_type() for message in said] == ["MISSION_COUNT"] * 8
     assert talk.session.fault.kind is Kind.NO_ANSWER
 
@@ -146,18 +147,20 @@ def test_refused_for_the_moment_is_asked_again_then_a_fault():
     assert talk.session.fault.kind is Kind.ARM_REFUSED
 
 
-def test_a_silent_heartbeat_is_a_lost_link_and_a_dead_drone_is_told_nothing():
+def test_who_says_nothing_is_silent_and_is_told_nothing():
     talk = Talk()
     talk.flying((10.0, 0.0, 8.0))
-    assert [talk.after(1.0) for _ in range(6)] == [[]] * 6
-    assert talk.session.fault.kind is Kind.LINK_LOST
+    assert [talk.after(1.0) for _ in range(12)] == [[]] * 12
+    assert talk.session.custody.standing is Standing.SILENT
+    assert talk.session.fault is None
 
 
 def test_in_a_mode_that_muster_did_not_choose_it_lets_go():
     talk = Talk()
     talk.flying((10.0, 0.0, 8.0))
-    assert talk.say(heartbeat(mode=3 << 16, armed=True), heartbeat(mode=3 << 16, armed=True)) == []
-    assert talk.session.fault.kind is Kind.TAKEN_OVER
+    assert talk.beats(mode=3 << 16, armed=True) == []
+    assert talk.session.custody.standing is Standing.PILOT
+    assert talk.session.telemetry().suspended == "pilot: mode POSCTL"
     talk.session.hold(talk.now)
     assert talk.fly((1.0, 1.0, 5.0)) == []
 
@@ -178,8 +181,9 @@ def test_the_first_battery_counts_alone():
     talk.say(position(), battery(0, 90), battery(1, 10))
     assert talk.session.telemetry().charge == 0.9
     talk.flying((10.0, 0.0, 8.0))
-    talk.say(battery(0, 10))
-    talk.after(0.1)
+    for _ in range(3):
+        talk.say(battery(0, 10))
+        talk.after(1.0)
     assert talk.session.fault.kind is Kind.LOW_BATTERY
 
 

@@ -16,6 +16,7 @@ from tests.muster_robots.mavlink.talk import (
     request,
 )
 
+from muster_robots.custody import Standing
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
 from muster_robots.mavlink.faults import Kind
 
@@ -117,7 +118,7 @@ def test_who_is_flown_by_somebody_is_not_taken_from_them():
     talk = Talk()
     talk.say(heartbeat(mode=3 << 16, armed=True), position(above=12.0))
     assert talk.fly((10.0, 0.0, 8.0)) == []
-    assert talk.session.fault.kind is Kind.TAKEN_OVER
+    assert talk.session.custody.standing is Standing.PILOT
     assert talk.after(2.0) == []
 
 
@@ -127,8 +128,8 @@ def test_a_pilot_who_takes_over_during_an_upload_is_let():
     talk.say(heartbeat(mode=PX4.hold, armed=True))
     talk.fly((20.0, 0.0, 8.0))
     assert talk.session.busy
-    assert talk.say(heartbeat(mode=3 << 16, armed=True), heartbeat(mode=3 << 16, armed=True)) == []
-    assert talk.session.fault.kind is Kind.TAKEN_OVER
+    assert talk.beats(mode=3 << 16, armed=True) == []
+    assert talk.session.custody.standing is Standing.PILOT
     assert talk.after(2.0) == []
 
 
@@ -160,10 +161,11 @@ def test_a_late_refusal_to_arm_is_a_fault_and_whom_a_second_request_arms_is_disa
 def test_a_fence_that_is_breached_by_words(text, breach):
     talk = Talk()
     talk.flying((10.0, 0.0, 8.0))
-    talk.say(from_drone(M.MAVLink_statustext_message(M.MAV_SEVERITY_WARNING, text)))
-    said = talk.after(0.1)
-    assert (talk.session.fault is not None) == breach
+    said = talk.say(from_drone(M.MAVLink_statustext_message(M.MAV_SEVERITY_WARNING, text)))
+    assert bool(talk.session.faults) == breach
+    assert talk.session.fault is None
     if breach:
-        assert talk.session.fault.kind is Kind.FENCE_BREACHED
-        assert talk.session.fault.detail == "Geofence breached"
+        assert talk.session.faults[0].kind is Kind.FENCE_BREACHED
+        assert talk.session.faults[0].reason == "fence breached: Geofence breached"
+        assert talk.session.telemetry().refused == talk.session.telemetry().suspended
         assert commands(said) == [(HOLD, 1.0)]

@@ -26,9 +26,8 @@ from muster_robots.mavlink.faults import Kind
 def test_a_breach_of_an_unknown_kind():
     talk = Talk()
     talk.flying((10.0, 0.0, 8.0))
-    talk.say(from_drone(M.MAVLink_fence_status_message(1, 1, 9, 0)))
-    assert commands(talk.after(0.1)) == [(HOLD, 1.0)]
-    assert (talk.session.fault.kind, talk.session.fault.detail) == (Kind.FENCE_BREACHED, "9")
+    assert commands(talk.say(from_drone(M.MAVLink_fence_status_message(1, 1, 9, 0)))) == [(HOLD, 1.0)]
+    assert [(fault.kind, fault.detail) for fault in talk.session.faults] == [(Kind.FENCE_BREACHED, "9")]
 
 
 def test_results_that_are_unknown():
@@ -41,8 +40,8 @@ def test_results_that_are_unknown():
     for seq in range(talk.fly((10.0, 0.0, 8.0))[0].count):
         talk.say(request(seq))
     talk.say(mission_ack(200))
-    assert talk.session.fault.kind is Kind.ITEM_REJECTED
-    assert talk.session.fault.detail.endswith(": 200")
+    assert talk.session.faults[0].kind is Kind.ITEM_REJECTED
+    assert talk.session.telemetry().refused.endswith(": 200")
 
 
 def test_numbers_that_are_none_are_no_place_and_no_heading():

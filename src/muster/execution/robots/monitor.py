@@ -37,6 +37,9 @@ class Limits:
         a jam that lasts longer is told; when it has lasted twice as long, one of its robots gives up its task.
     look_every_s
         how often robots are looked at; at most as often as the executor ticks.
+    absent_for_s
+        where tasks are left that nobody else does, the mission waits for so long for a robot that is silent or
+        suspended; 0: it does not wait.
     """
 
     silent_after_s: float = 5.0
@@ -45,10 +48,11 @@ class Limits:
     aside_s: float = 5.0
     jam_after_s: float = 30.0
     look_every_s: float = 0.5
+    absent_for_s: float = 0.0
 
     def __post_init__(self) -> None:
         for name, seconds in asdict(self).items():
-            if not seconds > 0:
+            if not (seconds > 0 or (name == "absent_for_s" and seconds == 0)):
                 raise ParameterError(f"{name}: {seconds}; expected seconds above 0")
 
 

@@ -113,6 +113,7 @@ class RobotState:
     left: Place | None = None  # the last place known to be free: a way point passed
     home_usage: float = 0.0  # from the exit of the current task to `home`, in the mission's unit
     home_s: float = 0.0  # at least, for the same
+    unheard: tuple[int, int, str] | None = None  # order, way points, task of an order that held the whole work
     _order: int = 0
     _waypoints: tuple[Waypoint, ...] = ()
 
@@ -183,9 +184,27 @@ class RobotState:
         return "" if self._said is None else self._said.refused
 
     @property
+    def suspended(self) -> str:
+        """Why it takes no part for now, by its last telemetry; empty if it does."""
+        return "" if self.telemetry is None else self.telemetry.suspended
+
+    @property
     def arrived(self) -> bool:
         """Whether it has carried out the last order."""
         return self.passed >= len(self._waypoints)
+
+    def note_unheard(self) -> None:
+        """Remember the order that is replaced while it is not heard: it may be carried out all the same."""
+        whole = self.works and self.route and self.activity in (Activity.DRIVING, Activity.WORKING)
+        self.unheard = (self._order, len(self._waypoints), self.route[0]) if whole else None
+
+    def take_done_unheard(self) -> str:
+        """Return the task that it has done while it was not heard, once; empty if there is none."""
+        told = None if self.telemetry is None else self.telemetry.carried_out
+        if self.unheard is None or told is None or told[0] != self.unheard[0] or told[1] < self.unheard[1]:
+            return ""
+        task, self.unheard = self.unheard[2], None
+        return task
 
     def recall(self, used: float) -> None:
         """Set its usage before the first telemetry, in the mission's unit."""

@@ -10,16 +10,22 @@ import math
 import random
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from muster.mission.model import Origin
 from muster.motion.port import Place
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4, Autopilot
 from muster_robots.mavlink.dialect import Codec, Message, mavlink
 from muster_robots.mavlink.simulated.earth import degrees_of, ned_of
+from muster_robots.mavlink.simulated.failsafes import OwnModes
 from muster_robots.mavlink.simulated.faults import Faults
 from muster_robots.mavlink.simulated.flight import Flight
 
 _OFFBOARD_LOST_S = 1.0
+_DISARMS_AFTER_S = 2.0
+"""Seconds on the ground after which a drone that has landed disarms itself (PX4: COM_DISARM_LAND)."""
+_LANDS_MPS = 1.5
+_STICKS = mavlink.MAV_SYS_STATUS_SENSOR_RC_RECEIVER
 
 
 @dataclass
@@ -63,30 +69,60 @@ class SimulatedAutopilot:
         self._setpoint_s = self._armed_s = self._held_s = -1e9
         self._now = self._said_s = self._telemetry_s = -1e9
         self._arms_s: float | None = None  # when it will be armed
+        self._landed_s: float | None = None
+        self._queue: list[bytes] = []  # what has arrived while the process stood still
 
     def receive(self, data: bytes) -> None:
         """Take in a packet."""
+        if self._is_on("frozen"):
+            self._queue.append(data)
+            return
         for message in self._codec.parse(data):
-            if self._random.random() >= self.faults.loss:
+            if not self._is_on("silent") and self._random.random() >= self.faults.loss:
                 self.heard.append(message)
                 handler = getattr(self, f"_on_{message.get_type().lower()}", None)
-                if handler is not None and not self.faults.mute and self._is_for_me(message):
+                mute = self.faults.mute or self._is_on("mute")
+                if handler is not None and not mute and self._is_for_me(message):
                     handler(message)
 
     def advance(self, now: float) -> list[bytes]:
         """Fly until a time; returns the packets to be sent."""
-        by_s = 0.0 if self._now < -1e8 else now - self._now
+        frozen = self._is_on("frozen")
+        by_s = 0.0 if self._now < -1e8 or frozen else now - self._now
         self._now = now
+        if self._is_on("frozen"):
+            return []
+        queued, self._queue = self._queue, []
+        for data in queued:
+            self.receive(data)
         if self._arms_s is not None and now >= self._arms_s:
-            self.armed, self._armed_s, self._arms_s = True, now, None
+            self.armed, self._arms_s = True, None
+            self._armed_s = now if self._armed_s < -1e8 else self._armed_s
+        self._let_faults_happen()
         if self.armed:
             self._fly(by_s)
-        self._let_faults_happen()
+        else:
+            self.flight.fall(by_s)
         self._report(now)
         self._hold_heartbeats_back()
         out, self._out = self._out, []
-        silent = self._due(self.faults.silent_at_s)
+        silent = self._is_on("silent")
         return [self._codec.pack(m) for m in out if not silent and self._random.random() >= self.faults.loss]
+
+    @property
+    def critical(self) -> bool:
+        """Whether a failsafe is on."""
+        return bool(self._own.on)
+
+    @cached_property
+    def _own(self) -> OwnModes:
+        return OwnModes(self.kind, self.faults, self._tell)
+
+    def _is_on(self, what: str) -> bool:
+        return self._armed_s > -1e8 and self._own.is_on(what, self._now - self._armed_s)
+
+    def _tell(self, severity: int, text: str) -> None:
+        self._say("statustext", severity, text.encode())
 
     def _hold_heartbeats_back(self) -> None:
         """While heartbeats are to be late, keep them; then say all of them."""
@@ -104,12 +140,17 @@ class SimulatedAutopilot:
         return at_s is not None and self._armed_s > -1e8 and self._now >= self._armed_s + at_s
 
     def _let_faults_happen(self) -> None:
-        if self._due(self.faults.low_battery_at_s):
-            self.battery = 0.1
-        if self._due(self.faults.disarm_at_s):
+        if self.faults.low_battery_at_s is not None:
+            self.battery = self.faults.low_battery if self._is_on("low_battery") else self._full
+        if self.armed and self._due(self.faults.disarm_at_s):
             self.armed = False
-        if self._due(self.faults.pilot_at_s) and self.mode in self.kind.own_modes:
-            self.mode = 2 if self.kind is ARDUPILOT else 3 << 16  # altitude hold, position control
+            self._tell(mavlink.MAV_SEVERITY_INFO, "Disarmed by external command")
+        if self.armed and self._armed_s > -1e8:
+            self.mode = self._own.mode_after(self.mode, self._now - self._armed_s)
+
+    @cached_property
+    def _full(self) -> float:
+        return self.battery
 
     def _report(self, now: float) -> None:
         if now >= self._said_s + 1.0:
@@ -117,11 +158,13 @@ class SimulatedAutopilot:
             known = mavlink.MAV_AUTOPILOT_PX4 if self.kind is PX4 else mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
             autopilot = known if self.autopilot_field is None else self.autopilot_field
             base = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | (mavlink.MAV_MODE_FLAG_SAFETY_ARMED if self.armed else 0)
-            self._say("heartbeat", mavlink.MAV_TYPE_QUADROTOR, autopilot, base, self.mode, 4, 3)
-            self._say("sys_status", 0, 0, 0, 0, 12000, -1, round(self.battery * 100), 0, 0, 0, 0, 0, 0)
-            breached = int(self._due(self.faults.breach_at_s))
-            if self._due(self.faults.breach_text_at_s):
-                self._say("statustext", mavlink.MAV_SEVERITY_WARNING, b"Geofence breached")
+            state = mavlink.MAV_STATE_CRITICAL if self.critical else mavlink.MAV_STATE_ACTIVE
+            self._say("heartbeat", mavlink.MAV_TYPE_QUADROTOR, autopilot, base, self.mode, state, 3)
+            sticks = _STICKS if self.faults.pilot_at_s is not None and not self.faults.no_sticks else 0
+            self._say("sys_status", *[sticks] * 3, 0, 12000, -1, round(self.battery * 100), 0, 0, 0, 0, 0, 0)
+            breached = int(self._is_on("breach"))
+            if self._is_on("breach_text"):
+                self._tell(mavlink.MAV_SEVERITY_WARNING, "Geofence breached")
             self._say("fence_status", breached, breached, mavlink.FENCE_BREACH_BOUNDARY if breached else 0, 0)
         if now >= self._telemetry_s + 0.1:
             self._telemetry_s = now
@@ -132,11 +175,16 @@ class SimulatedAutopilot:
         lat, lon = (round(degrees * 1e7) for degrees in degrees_of(self.origin, flight.place))
         up = -flight.place[2]
         velocity = [round(v * 100) for v in flight.velocity]
-        self._say("global_position_int", ms, lat, lon, round((50 + up) * 1000), round(up * 1000), *velocity, 65535)
-        self._say("local_position_ned", ms, *flight.place, *flight.velocity)
+        in_air = self.armed and flight.flies
+        landed = mavlink.MAV_LANDED_STATE_IN_AIR if in_air else mavlink.MAV_LANDED_STATE_ON_GROUND
+        self._say("extended_sys_state", 0, landed)
         self._say("attitude", ms, 0, 0, flight.yaw, 0, 0, 0)
         state = mavlink.MISSION_STATE_COMPLETE if self.complete else mavlink.MISSION_STATE_ACTIVE
         self._say("mission_current", self.current, len(self.items), state)
+        if self._is_on("gps_lost") or self._is_on("no_position"):
+            return
+        self._say("global_position_int", ms, lat, lon, round((50 + up) * 1000), round(up * 1000), *velocity, 65535)
+        self._say("local_position_ned", ms, *flight.place, *flight.velocity)
 
     def _say(self, name: str, *values: object) -> None:
         self._out.append(getattr(self._codec.make, f"{name}_encode")(*values))
@@ -150,10 +198,14 @@ class SimulatedAutopilot:
             self.flight.go(self._setpoint, by_s, self._yaw)
         elif self.mode in (self.kind.back, self.kind.land):
             home = self.mode == self.kind.land or self.flight.go((0.0, 0.0, self.flight.place[2]), by_s)
-            if home and self.flight.go((*self.flight.place[:2], 0.0), by_s):
-                self.armed = False
+            if home and self.flight.go((*self.flight.place[:2], 0.0), by_s, most_mps=_LANDS_MPS):
+                self._landed_s = self._now if self._landed_s is None else self._landed_s
+                if self._now >= self._landed_s + _DISARMS_AFTER_S:
+                    self.armed, self._landed_s = False, None
+                return
         else:
             self.flight.velocity = (0.0, 0.0, 0.0)
+        self._landed_s = None
 
     def _fly_item(self, by_s: float) -> None:
         """ArduPilot turns as a condition before a way point says, waits for no turn, and holds for whole seconds."""
@@ -199,6 +251,15 @@ class SimulatedAutopilot:
         result = mavlink.MAV_RESULT_UNSUPPORTED if handler is None else handler(message)
         self._say("command_ack", message.command, result)
 
+    def _on_param_request_read(self, message: Message) -> None:
+        fence_m, first_m = self.faults.fence_m or 0.0, self.faults.first_item_m or 0.0
+        ardupilot = {"FENCE_ENABLE": 1.0, "FENCE_TYPE": 2.0, "FENCE_RADIUS": fence_m, "FENCE_ALT_MAX": 100.0}
+        px4 = {"GF_MAX_HOR_DIST": fence_m, "GF_MAX_VER_DIST": 0.0, "MIS_DIST_1WP": first_m}
+        known = px4 if self.kind is PX4 else ardupilot
+        if message.param_id in known and not self.faults.mute_parameters:
+            value = known[message.param_id]
+            self._say("param_value", message.param_id.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32, len(known), 0)
+
     def _set_mode(self, message: Message) -> int:
         wide = self.kind is PX4
         wanted = int(message.param2) << 16 | int(message.param3) << 24 if wide else int(message.param2)
@@ -206,7 +267,10 @@ class SimulatedAutopilot:
             return int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
         if wanted == self.kind.guided != self.kind.ready and self.faults.refuse_start:
             return int(mavlink.MAV_RESULT_DENIED)
-        self.mode = wanted
+        if self._is_on("gps_lost") and wanted != self.kind.land:
+            self._tell(mavlink.MAV_SEVERITY_CRITICAL, "Rejecting mode switch: no global position")
+            return int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
+        self.mode = self._own.ask(wanted, self.mode)
         return int(mavlink.MAV_RESULT_ACCEPTED)
 
     def _arm(self, message: Message) -> int:
@@ -234,8 +298,22 @@ class SimulatedAutopilot:
         if not self.armed or not self.items or self.faults.refuse_start:
             self._say("statustext", mavlink.MAV_SEVERITY_CRITICAL, b"Mission start denied: no valid mission")
             return int(mavlink.MAV_RESULT_DENIED)
-        self.mode = self.kind.mission
+        if (refusal := self._infeasible()) or self._is_on("gps_lost"):
+            self._tell(mavlink.MAV_SEVERITY_CRITICAL, refusal or "Mission rejected: no global position")
+            return int(mavlink.MAV_RESULT_DENIED)
+        self.mode = self._own.ask(self.kind.mission, self.mode)
         return int(mavlink.MAV_RESULT_ACCEPTED)
+
+    def _infeasible(self) -> str:
+        """Why a mission is refused at its start; empty if it is flown [PX4: MissionFeasibilityChecker]."""
+        places = [i for i in self.items if i.command == mavlink.MAV_CMD_NAV_WAYPOINT][int(self.kind.home_first) :]
+        far_m = [math.hypot(*self._place_of(item)[:2]) for item in places]
+        first_m = self.faults.first_item_m
+        if far_m and first_m is not None and far_m[0] > first_m:
+            return f"First waypoint too far away: {far_m[0]:.0f}m, {first_m:.0f} max"
+        if self.faults.fence_m is not None and (outside := [m for m in far_m if m > self.faults.fence_m]):
+            return f"Geofence violation for waypoint {far_m.index(outside[0]) + 1}"
+        return ""
 
     def _take_off(self, message: Message) -> int:
         if not self.armed or self.mode != self.kind.guided or self.faults.refuse_start:

@@ -227,6 +227,7 @@ const CHANGES = {
     state.doneTwice.set(task, [...new Set([...(state.doneTwice.get(task) ?? []), ...robots])]);
   },
   robot_fails: (state, { robot }, _, kind) => state.takeOut(robot, kind),
+  robot_suspended: (state, { robot }, _, kind) => state.takeOut(robot, kind),
   robot_stuck: (state, { robot }, _, kind) => state.takeOut(robot, kind),
   robot_removed(state, { robot }, _, kind) {
     state.takeOut(robot, kind);
