@@ -54,8 +54,9 @@ def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: Obser
         _opened(fleet, mission, request) as (robots, at_end),
         recorded(
             mission, request.record, request.observers, lambda error: remarks.append(f"no more is kept: {error}")
-        ) as recorder,
+        ) as others,
     ):
+        recorder = others if request.journal is None else request.journal.with_others(others)
         report = carry_out_live(mission, plan, robots, request, recorder=recorder)
         at_end()
     return replace(report, remarks=(*report.remarks, *remarks))

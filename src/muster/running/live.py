@@ -29,7 +29,7 @@ from muster.mission.supported_features import require_supported
 from muster.mission.system.clock import Clock
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import RobotPort
-from muster.running.fleet_clock import FleetWithMissionClock, clock_of, start_of
+from muster.running.fleet_clock import BeforeOrderAt, FleetWithMissionClock, clock_of, start_of
 from muster.running.fleet_in_traffic import FleetInTraffic
 from muster.running.observed_run import ObservedRun
 from muster.running.replanning import planning_of
@@ -59,6 +59,7 @@ def carry_out_live(
     request: ObservedRun | None = None,
     *,
     recorder: Recorder | None = None,
+    before_order: BeforeOrderAt | None = None,
     **how: Any,
 ) -> Report:
     """Let a fleet carry a plan out to its end, or until `halt` is set; then robots stay where they are.
@@ -73,6 +74,8 @@ def carry_out_live(
         how the plan is carried out; without it the fields of `ObservedRun` are keyword arguments.
     recorder
         receives all events, and the positions that robots report.
+    before_order
+        as of `Live`; of a run with a journal that receives orders.
 
     Raises
     ------
@@ -81,7 +84,17 @@ def carry_out_live(
         over.
     """
     request = ObservedRun(**{"world": OPEN_FLEET, **how}) if request is None else request
-    live = Live(mission, plan, fleet, request, recorder=recorder, wall=request.wall)
+    journal = request.journal
+    live = Live(
+        mission,
+        plan,
+        fleet,
+        request,
+        recorder=recorder,
+        state=None if journal is None else journal.state,
+        wall=request.wall,
+        before_order=before_order if journal is None else journal.on_order,
+    )
     halt, on_event, told = request.halt or threading.Event(), request.on_event, 0
     try:
         while not halt.is_set():
@@ -113,6 +126,8 @@ class Live:
         what is known of a mission that goes on after a stop.
     wall
         the wall clock; by default the machine's, or of a fleet with simulated time that clock alone.
+    before_order
+        receives each order before the robot does: when, whose, and its way points, none where the robot is to stay.
 
     Raises
     ------
@@ -131,6 +146,7 @@ class Live:
         recorder: Recorder | None = None,
         state: MissionState | None = None,
         wall: Clock | None = None,
+        before_order: BeforeOrderAt | None = None,
         **how: Any,
     ) -> None:
         request = ObservedRun(**{"world": OPEN_FLEET, **how}) if request is None else request
@@ -153,7 +169,8 @@ class Live:
             request.traffic, mission, seed=seed, world=None if robot_paths is None else robot_paths.world
         )
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
-        self._fleet = FleetWithMissionClock(managed, begin_s, None if has_simulated_time(fleet) else clock)
+        of_day = None if has_simulated_time(fleet) else clock
+        self._fleet = FleetWithMissionClock(managed, begin_s, of_day, before_order)
         self._robots, self._recorder, self._stood = fleet, recorder, False
         travel = travel_of(mission, robot_paths)
         replan, self._standing = planning_of(mission, request.duty, request.planning, travel, seed, repeatable=False)

@@ -121,6 +121,13 @@ class Session:
             self._requests = None
             self._try(lambda: self._call_back(now), now)
 
+    def take_over(self, now: float) -> None:
+        """Take over a drone that an earlier run has left armed in a mode of Muster's: it hovers, or stands down."""
+        drone = self.drone
+        if drone.autopilot is not None and drone.telemetry.armed and drone.telemetry.mode in drone.kind.own_modes:
+            drone.asked_to_arm = True
+            self.end("hold", now)
+
     def note_missing_hold(self) -> None:
         """Add to its fault that it did not get the command to hover: it may fly on."""
         if self.fault is not None and self.hold_pending and self._is_left_to_us:
