@@ -13,7 +13,6 @@ from dataclasses import replace
 from typing import Any
 
 from muster.execution.fleet import Fleet
-from muster.mission.errors import MusterError
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.mission.plan import Plan, Route
 from muster.mission.system.clock import Clock
@@ -141,7 +140,7 @@ def _sent_home(
 ) -> dict[str, str]:
     """Carry the way home out; returns by robot that does not get there why."""
     routes = [Route(one.id, tuple(t.id for t in home.tasks if t.only_robots == (one.id,))) for one in home.robots]
-    how = {"halt": halt, "on_event": on_event, "wall": wall}
+    how: dict[str, Any] = {"halt": halt, "on_event": on_event, "wall": wall}
     before_order = None if journal is None else journal.on_order
     report = carry_out_live(home, Plan(routes=tuple(routes)), fleet, before_order=before_order, **how)
     robots = {home_of(one.id): one.id for one in home.robots}

@@ -192,6 +192,8 @@ class Live:
             manager.expect(self.executor.outlook)
         if state is None:
             self._say_start(mission, begin_s)
+        else:
+            self._stop_those_sent()
 
     @property
     def state(self) -> MissionState:
@@ -263,6 +265,12 @@ class Live:
         self._fleet.stop()
         if self._standing is not None and self._standing.improver is not None:
             self._standing.improver.close()
+
+    def _stop_those_sent(self) -> None:
+        """Robots that the run before has sent off stay where they are until they are sent again: nobody led them."""
+        for robot in self.executor.crew.values():
+            if robot.known.left_s is not None:
+                robot.stop(self.executor.now_s)
 
     def _say_start(self, mission: Mission, begin_s: float) -> None:
         """Emit when the mission starts; begun late, what is left in time is planned again."""
