@@ -74,5 +74,6 @@ def _opened(fleet: Fleet | str, mission: Mission, request: ObservedRun) -> Itera
     from muster.running.claimed_fleet import claimed_fleet
 
     assert request.halt is not None
-    with claimed_fleet(mission, request, request.halt) as opened:
+    goes_on = request.journal is not None and request.journal.state is not None
+    with claimed_fleet(mission, request, request.halt, again=goes_on) as opened:
         yield opened

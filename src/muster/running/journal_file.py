@@ -22,11 +22,13 @@ from muster.mission.plan import Plan
 from muster.mission.reading.plan_reader import plan_from
 from muster.mission.system.checked_lines import checked_line, text_of
 from muster.mission.system.platforms import data_folder
+from muster.mission.texts.counting import counted
 from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
 from muster.report.record.json_messages import json_bytes
 from muster.state import MissionState
-from muster.state.recovery import recovered_from
+from muster.state.recovery import ORDER, recovered_from
+from muster.state.task_events import Ends
 
 SCHEMA = "muster-journal/1"
 _EXPECTED = f"a journal as Muster writes it ({SCHEMA})"
@@ -119,6 +121,16 @@ class ReadJournal:
         """Whether the mission was over, and robots had got their last orders."""
         kinds = [entry["kind"] for entry in self.entries]
         return "final_states" in kinds and "mission_ended" in kinds[: _last(kinds, "final_states")]
+
+    @property
+    def progress(self) -> str:
+        """How many tasks were done, in words."""
+        return f"{counted(sum(entry['kind'] == Ends.kind for entry in self.entries), 'task')} done"
+
+    @property
+    def sent(self) -> set[str]:
+        """The robots that were sent anywhere."""
+        return {entry["data"]["robot"] for entry in self.entries if entry["kind"] == ORDER and entry["data"]["to"]}
 
     def is_of(self, mission: Mission) -> bool:
         """Whether the run carried out this mission."""

@@ -296,22 +296,36 @@ class Live:
 
 
 class _Heard(Protocol):
+    @property
+    def ports(self) -> Mapping[str, RobotPort]:
+        """See `Fleet`."""
+        ...
+
     def robots_not_ready(self) -> Mapping[str, str]:
         """Robots of the mission that have not said where they are, and what is missing."""
         ...
 
 
-def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float, needed: str = "its pose") -> None:
+def wait_for_robots(
+    fleet: _Heard, halt: threading.Event, wait_s: float, needed: str = "its pose", *, some: bool = False
+) -> None:
     """Until nothing is missing of the mission's robots, of what is needed, or `halt` is set.
+
+    Parameters
+    ----------
+    some
+        whether those that are ready when the time is over are enough, as of a mission that is under way.
 
     Raises
     ------
     NetworkError
-        if something is, when the time is over.
+        if something is missing when the time is over.
     """
     until = time.monotonic() + wait_s
     while (robots_not_ready := fleet.robots_not_ready()) and not halt.is_set():
         if time.monotonic() > until:
+            if some and len(robots_not_ready) < len(fleet.ports):
+                return
             robot, why = next(iter(robots_not_ready.items()))
             more = f" (and {len(robots_not_ready) - 1} more)" if len(robots_not_ready) > 1 else ""
             raise NetworkError(f"robot {robot}: {why} within {wait_s:g} s{more}; expected {needed}")
