@@ -8,20 +8,24 @@ of any other run.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from muster.execution import Report
 from muster.execution.fleet import Fleet
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.mission.plan import Plan, Route
 from muster.mission.system.clock import Clock
 from muster.motion.port import Telemetry
 from muster.running.journal import AWAY_M, Journal
-from muster.running.live import carry_out_live
-from muster.state import ExecutionEvent
+from muster.running.live import Live, carry_out_live
+from muster.running.observed_run import ObservedRun
+from muster.state import ExecutionEvent, MissionState
 from muster.state.reasons import is_no_loss
 
+RECOVERED = "not to be done: robots were brought home"
+"""Why no task was done."""
 _UP_M = 0.5
 """A robot in the air goes over its start before it comes down, if it is this much higher than that."""
 _FREE = {
@@ -90,6 +94,29 @@ def bring_home(
     return _sent_home(home, fleet, halt, journal, on_event, wall)
 
 
+def brought_home(mission: Mission, plan: Plan, fleet: Fleet, request: ObservedRun) -> Report:
+    """Bring all robots home, as `bring_home`, and return a report of no tasks; remarks say which are not home.
+
+    Parameters
+    ----------
+    plan : Plan
+        The plan of the mission, of which nothing is carried out.
+    request : ObservedRun
+        With the journal, if there is one, and the settings of the fleet.
+    """
+    halt, ending = request.halt or threading.Event(), getattr(request.settings, "at_end", "hold")
+    how: dict[str, Any] = {"journal": request.journal, "on_event": request.on_event, "wall": request.wall}
+    lost = bring_home(mission, fleet, halt, at_end=ending, **how)
+    nothing = Live(mission, plan, fleet, request, state=MissionState(mission, request.ignore), wall=request.wall)
+    remarks = tuple(f"{robot}: not home: {why}" for robot, why in lost.items())
+    return without_tasks(nothing.result(), mission, remarks)
+
+
+def without_tasks(report: Report, mission: Mission, remarks: tuple[str, ...]) -> Report:
+    """Return a report that says that no task was to be done, as robots were brought home."""
+    return replace(report, tasks_lost=tuple((task.id, RECOVERED) for task in mission.tasks), remarks=remarks)
+
+
 def homeward(mission: Mission, starts: Mapping[str, Robot], said: Mapping[str, Telemetry]) -> Mission:
     """Return the mission of robots that go to their starts from where they say that they are.
 
@@ -145,9 +172,3 @@ def _sent_home(
     report = carry_out_live(home, Plan(routes=tuple(routes)), fleet, before_order=before_order, **how)
     robots = {home_of(one.id): one.id for one in home.robots}
     return {robots[task]: why for task, why in report.tasks_lost if task in robots and not is_no_loss(why)}
-
-
-def not_heard(fleet: Fleet, robots: Collection[str]) -> list[str]:
-    """Return the robots that have not said where they are."""
-    ports = fleet.ports
-    return [name for name in robots if name not in ports or ports[name].telemetry() is None]

@@ -337,7 +337,7 @@ def show_final_states(states: Sequence[FinalState], *, asks: bool) -> None:
     Where the mission did not end as planned (`asks`), a line before them says what to do with robots that still move.
     """
     if asks and (moving := [state.robot for state in states if state.moving]):
-        todo = "land or stop them by their own controls or a ground station, and disarm them"
+        todo = "land or stop them by their own controls or a ground station, and disarm them, or give --recover"
         click.echo(f"still flying, driving or armed: {', '.join(moving)}; {todo}", err=True)
     for state in states:
         click.echo(str(state), err=True)
