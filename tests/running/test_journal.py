@@ -129,7 +129,7 @@ def test_the_journal_of_another_mission_or_fleet_is_refused(path, there, plan):
     found.require_of(there, "world", ["it"])
     other = replace(there, tasks=there.tasks[1:])
     with pytest.raises(
-        InputError, match=r'a\.journal: tasks: those of mission "mission", of .*; expected the tasks of'
+        InputError, match=r'a\.journal: tasks: those of mission "mission", begun .*; expected the tasks of'
     ):
         found.require_of(other, "world", ["it"])
     with pytest.raises(InputError, match=r"a\.journal: fleet: world \(it\); expected world \(UDP port 1\)"):
@@ -143,7 +143,9 @@ def test_what_has_ended_is_not_resumed(path, there, plan):
     journal.end(final_states_of(fleet, there))
     journal.close()
     assert interrupted_run(path) is None
-    with pytest.raises(InputError, match=r"run: the run of .* has ended; expected one that did not end \(--recover"):
+    with pytest.raises(
+        InputError, match=r"run: that of mission .*, has ended; expected one that did not end \(--recover"
+    ):
         read_journal(path).require_under_way()
 
 

@@ -69,6 +69,11 @@ class Header:
     began: str
     record: str | None = None
 
+    @property
+    def name(self) -> str:
+        """The mission, and when its run began, in words."""
+        return f"mission {shown(self.mission)}, begun {self.began}"
+
     @classmethod
     def of(
         cls, mission: Mission, plan: Plan, fleet: str, claims: Collection[str], record: str | Path | None = None
@@ -145,7 +150,7 @@ class ReadJournal:
         known, asked = self.header.parts, parts_of(mission)
         for key in (*known, *asked):
             if known.get(key) != asked.get(key):
-                value = f"those of mission {shown(self.header.mission)}, of {self.header.began}"
+                value = f"those of {self.header.name}"
                 raise self._refusal(key, value, f"the {key} of {mission.source.file}, as when the run began")
         if self.header.fleet != fleet or set(self.header.claims) != set(claims):
             theirs = f"{self.header.fleet} ({', '.join(self.header.claims)})"
@@ -154,7 +159,7 @@ class ReadJournal:
     def require_under_way(self) -> None:
         """Raise `InputError` if the run has ended: nothing of it can be resumed."""
         if self.ended:
-            value = f"the run of {self.header.began} has ended"
+            value = f"that of {self.header.name}, has ended"
             raise self._refusal("run", value, "one that did not end (--recover brings robots home all the same)")
 
     def _refusal(self, field: str, value: str, expected: str) -> InputError:

@@ -78,11 +78,11 @@ class GoingOn:
 
         if self.interrupted is None or not (left := left_behind(self.interrupted, self.mission, states)):
             return
-        done = self.interrupted.progress
+        run = f"the run of {self.interrupted.header.name} did not end ({self.interrupted.progress})"
+        helps = "--resume, which goes on with it, or --recover, which brings everyone home"
+        left_so = "; ".join(left)
         raise ParameterError(
-            f"{self.path}: the run of {self.interrupted.header.mission} of {self.interrupted.header.began} did not "
-            f"end ({done}), and has left {'; '.join(left)}; expected --resume, which goes on with it, or --recover, "
-            "which brings everyone home (or no such file, to begin anew)"
+            f"{self.path}: {run}, and has left {left_so}; expected {helps} (or no such file, to begin anew)"
         )
 
 
@@ -171,7 +171,7 @@ def kept_journal(how: GoingOn, plan: Plan, options: RealRunOptions) -> Iterator[
         told = "by it --resume goes on with the run if it is interrupted"
     else:
         journal = Journal.resumed(how.before, how.mission, say)
-        told = f"goes on with the run of {how.before.header.began}, {how.before.progress}"
+        told = f"goes on with the run of {how.before.header.name}, {how.before.progress}"
     if not options.quiet:
         say(f"journal: {how.path}: {told}")
     try:
