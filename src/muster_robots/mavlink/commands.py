@@ -34,7 +34,8 @@ def mission(drone: Drone, waypoints: Sequence[Waypoint]) -> Script:
     yield from _armed(drone)
     drone.mode, drone.changing_mode = None, True
     yield from started(drone.target, kind, route.first)
-    drone.route, drone.mode, drone.changing_mode = route, kind.mission, False
+    drone.route, drone.mode = route, kind.mission
+    drone.changing_mode = telemetry.mode != kind.mission  # it flies, and no heartbeat has shown the mode yet
 
 
 def guided(drone: Drone, waypoints: Sequence[Waypoint]) -> Script:

@@ -74,7 +74,9 @@ def _obey(folder: str, memory_mb: int) -> int:
     try:
         _carry_out(begin, folder, inbox, outbox, ended)
     except MusterError as error:
-        outbox.send({"type": "failed", "reason": str(error).splitlines()[0]})
+        left = "; ".join(str(one) for one in getattr(error, "states", ()) if one.moving)
+        told = f"; still flying, driving or armed: {left}; expected a run with recover" if left else ""
+        outbox.send({"type": "failed", "reason": f"{str(error).splitlines()[0]}{told}"})
     except (MemoryError, OSError) as error:
         if real.is_set() or not is_of_memory(error):
             raise
@@ -154,11 +156,13 @@ def _world_run(
         begun = None if state is None else Begun.of(state, begin["bodies"], begin["until_s"], begin["world"])
         return SimulatedRun(mission, plan, request, recorder=recorder, begun=begun)
     from muster.running.fleet_registry import fleet_ready
-    from muster_control.runs.runner.real_run import RealRun
+    from muster_control.runs.runner.real_run import RealRun, RecoveryRun
 
-    fleet, at_end = fleet_ready(request.world, mission, request.settings, ended, again=state is not None)
+    again = state is not None or request.recover
+    fleet, at_end = fleet_ready(request.world, mission, request.settings, ended, again=again)
+    made = RecoveryRun if request.recover else RealRun
     try:
-        return RealRun(mission, plan, fleet, recorder, request=request, state=state, at_end=at_end)
+        return made(mission, plan, fleet, recorder, request=request, state=state, at_end=at_end)
     except BaseException:
         fleet.close()
         raise

@@ -164,8 +164,8 @@ class RunLoop:
     def _do(self, verb: str, data: Mapping[str, Any]) -> None:
         if verb == "pause":
             self._require(not self._paused, "the run is paused already")
-            self._paused = True
             self._world_run.pause()
+            self._paused = True
         elif verb == "resume":
             self._require(self._paused, "the run is not paused")
             self._paused = False
