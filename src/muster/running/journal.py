@@ -116,9 +116,7 @@ class Journal(NoObserver):
 
     def on_order(self, now: float, robot: str, waypoints: Sequence[Waypoint]) -> None:
         """Write an order and sync all, before it is sent; without way points the robot stays where it is."""
-        labels = list(dict.fromkeys(waypoint.label for waypoint in waypoints if waypoint.label))
-        to = [round(c, 4) for c in waypoints[-1].position] if waypoints else None
-        self._write(now, ORDER, {"robot": robot, "to": to, "for": labels})
+        self._write(now, ORDER, order_data(robot, waypoints))
         self._sync()
 
     def end(self, states: Sequence[FinalState]) -> None:
@@ -154,6 +152,13 @@ class Journal(NoObserver):
             self._file = None
             why = getattr(error, "strerror", None) or str(error)
             self._say(f"warning: {self.path}: {why}; the journal is removed: the run goes on, and cannot be resumed")
+
+
+def order_data(robot: str, waypoints: Sequence[Waypoint]) -> dict[str, Any]:
+    """Return an order as journals have it: whose, where it leads (None: the robot stays), for which tasks."""
+    labels = list(dict.fromkeys(waypoint.label for waypoint in waypoints if waypoint.label))
+    to = [round(c, 4) for c in waypoints[-1].position] if waypoints else None
+    return {"robot": robot, "to": to, "for": labels}
 
 
 def final_states_event(states: Sequence[FinalState]) -> FinalStates:

@@ -190,7 +190,7 @@ def read_journal(path: str | Path) -> ReadJournal:
     try:
         first, *rest = [json.loads(text) for text in texts[:whole] if text is not None]
         header = Header(**{**_header(first), "claims": tuple(first["claims"])})
-        entries = tuple({"time_s": float(e["time_s"]), "kind": str(e["kind"]), "data": dict(e["data"])} for e in rest)
+        entries = tuple({**e, "time_s": float(e["time_s"]), "kind": str(e["kind"])} for e in rest)
     except (ValueError, TypeError, KeyError):
         raise InputError([Finding(str(file), None, "", "another file, or an empty one", _EXPECTED)]) from None
     return ReadJournal(file, header, entries, sum(len(line) + 1 for line in data.split(b"\n")[:whole]))

@@ -172,6 +172,7 @@ class RecoveryRun(RealRun):
         self._halt.set()
         if self._thread.ident is not None:
             self._thread.join()
+        self.stop()
         return self._end()
 
     def close(self) -> None:
