@@ -267,10 +267,14 @@ class Live:
             self._standing.improver.close()
 
     def _stop_those_sent(self) -> None:
-        """Robots that the run before has sent off stay where they are until they are sent again: nobody led them."""
+        """Robots that the run before has sent off stay where they are until they are sent again: nobody led them.
+
+        Who is not heard takes no part until it is.
+        """
         for robot in self.executor.crew.values():
             if robot.known.left_s is not None:
                 robot.stop(self.executor.now_s)
+        self.executor.take_out_unheard()
 
     def _say_start(self, mission: Mission, begin_s: float) -> None:
         """Emit when the mission starts; begun late, what is left in time is planned again."""

@@ -32,6 +32,7 @@ from muster_robots.cli.real_robots import (
 from muster_robots.fleet_settings import MavlinkSettings
 
 if TYPE_CHECKING:
+    from muster.execution.final_state import FinalState
     from muster_robots.mavlink import MavlinkFleet
     from muster_robots.mavlink.autopilots import AtEnd
     from muster_robots.mavlink.dry_run import Line
@@ -58,7 +59,7 @@ def command(mission: MissionFile, options: RealRunOptions) -> int:
         made = MavlinkFleet(loaded, settings.endpoints, settings, height_m=settings.height_m)
         fleet = stack.enter_context(closing(made))
         stack.enter_context(signals_interrupt())
-        last_lines = stack.enter_context(LastLines(fleet.final_states))
+        last_lines = stack.enter_context(LastLines(lambda: how.judged(fleet.final_states())))
         plan = None if how.again else given or planned(options, loaded, start_in_time(loaded, fleet, options))
         if plan is not None and not options.quiet:
             _warn(loaded, plan, settings.height_m)
@@ -144,14 +145,18 @@ def _degrees(value: float | None) -> str:
 
 def _fly(plan: Plan | None, fleet: MavlinkFleet, how: GoingOn, options: RealRunOptions) -> int:
     at_end: AtEnd = options.request.settings.at_end
+
+    def states() -> list[FinalState]:
+        return how.judged(fleet.final_states())
+
     with ctrl_c_halts(TO_END) as halt:
         if how.recovers:
             return recovered(how, fleet, options, halt, lambda: None)
         end = partial(_end, fleet, at_end, halt)
-        report = carried_out(how.mission, plan, fleet, how, options, halt, fleet.final_states, at_end=end)
+        report = carried_out(how.mission, plan, fleet, how, options, halt, states, at_end=end)
     for fault in fleet.faults:
         click.echo(str(fault), err=True)
-    return reported(how.mission, report, options, halt, "drones were told to hover", fleet.final_states())
+    return reported(how.mission, report, options, halt, "drones were told to hover", states())
 
 
 def _end(fleet: MavlinkFleet, at_end: AtEnd, halt: threading.Event) -> None:

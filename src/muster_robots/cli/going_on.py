@@ -72,6 +72,15 @@ class GoingOn:
         """Whether the mission is under way already, so that robots may be anywhere."""
         return self.resumes or self.recovers
 
+    def judged(self, states: Sequence[FinalState]) -> list[FinalState]:
+        """The states of robots, where those count as moving that the run before has sent off and nobody hears."""
+        sent = set() if self.before is None else self.before.sent
+        lost = "not heard since the stop: it may be armed, or move"
+        return [
+            replace(one, state=lost, moving=True) if one.position is None and one.robot in sent else one
+            for one in states
+        ]
+
     def require_nobody_left(self, states: Sequence[FinalState]) -> None:
         """Raise `ParameterError` if a run that did not end has left robots armed, moving, or away from their starts."""
         from muster.running.journal import left_behind
@@ -212,13 +221,13 @@ def recovered(
 
     journal = None if how.before is None else Journal.resumed(how.before, how.mission)
     try:
-        with LastLines(lambda: final_states_of(fleet, how.mission), begun=True):
+        with LastLines(lambda: how.judged(final_states_of(fleet, how.mission)), begun=True):
             on_event = None if options.quiet else print_event
             ending = getattr(options.request.settings, "at_end", "hold")
             lost = bring_home(how.mission, fleet, halt, at_end=ending, journal=journal, on_event=on_event)
             if not hasattr(fleet, "recover"):
                 at_end()
-        states = final_states_of(fleet, how.mission)
+        states = how.judged(final_states_of(fleet, how.mission))
         if journal is not None:
             journal.end(states)
     finally:
@@ -235,7 +244,6 @@ def recovered(
     show_final_states(states, asks=True)
     return exit_code_if(
         (Ending.STILL_MOVING, any(one.moving for one in states)),
-        (Ending.STILL_MOVING, how.before is not None and how.before.sent.intersection(unheard)),
         (Ending.INTERRUPTED, halt.is_set()),
         (Ending.TASKS_LOST, lost or unheard),
     )

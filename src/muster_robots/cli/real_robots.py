@@ -222,7 +222,7 @@ def carried_out_from_here(
     mission = there = how.mission
 
     def states() -> Sequence[FinalState]:
-        return final_states_of(fleet, there)
+        return how.judged(final_states_of(fleet, there))
 
     if how.recovers and not halt.is_set():
         return recovered(how, fleet, options, halt, at_end)

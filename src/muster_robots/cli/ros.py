@@ -90,7 +90,9 @@ def command(
         own = ("--planning", json.dumps(_as_data(options)), "--targets", "" if targets is None else targets.as_text())
         where = ("--namespace", settings.namespace, "--frame", settings.frame, "--poses", settings.poses)
         node = (sys.executable, "-m", "muster_robots.cli.ros_node", *where, *own)
-        work = _Work(given, stay, targets is not None, settings.frame if markers else None, options)
+        work = _Work(
+            given, stay, stay or loaded is None, targets is not None, settings.frame if markers else None, options
+        )
         return _with_nodes(loaded, work, node, begins=not on_start)
     finally:
         leave()
@@ -125,6 +127,7 @@ class _Work:
 
     plan: Plan | None
     stay: bool
+    loads: bool  # whether users load missions: what they start begins anew
     finds_targets: bool
     marked_in: str | None  # the frame of markers for RViz, where they are asked for
     options: RealRunOptions
@@ -230,7 +233,7 @@ def _carried_out(
     wait_for_robots(fleet, controller.halt, options.request.settings.wait_s, some=how.again)
     if controller.halt.is_set():
         return None
-    if how.interrupted is not None:
+    if not work.loads:
         how.require_nobody_left(final_states_by_telemetry(fleet, mission))
     if start is not None:
         there = from_here(mission, fleet)
@@ -248,7 +251,7 @@ def _carried_out(
         observers.append(Markers(there, work.marked_in))
 
     def states() -> list[FinalState]:
-        return [] if children.fault else final_states_by_telemetry(fleet, there)
+        return [] if children.fault else how.judged(final_states_by_telemetry(fleet, there))
 
     with LastLines(states, begun=True):
         report = carried_out(there, plan, fleet, how, options, controller.halt, states, observers)

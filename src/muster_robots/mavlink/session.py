@@ -47,6 +47,7 @@ class Session:
         self.faults: list[Fault] = []  # after the first, refusals of what it was told because of that, or at the end
         self._at_end: AtEnd = "hold"  # what a drone that is out is told when it answers
         self.hold_pending = False  # whether its link was lost, and it was not told to hold since
+        self.takes_over = False  # whether it is taken over when it is heard
         self._order = 0
         self._outbox: list[Message] = []
         self._requests: RequestSequence | None = None
@@ -124,7 +125,8 @@ class Session:
     def take_over(self, now: float) -> None:
         """Take over a drone that an earlier run has left armed in a mode of Muster's: it hovers, or stands down."""
         drone = self.drone
-        if drone.autopilot is not None and drone.telemetry.armed and drone.telemetry.mode in drone.kind.own_modes:
+        self.takes_over = drone.autopilot is None  # not heard yet: at its first heartbeat
+        if not self.takes_over and drone.telemetry.armed and drone.telemetry.mode in drone.kind.own_modes:
             drone.asked_to_arm = True
             self.end("hold", now)
 
@@ -147,6 +149,8 @@ class Session:
         if self.drone.autopilot is None:
             return
         self.drone.telemetry.hear(message, now)
+        if self.takes_over and message.get_type() == "HEARTBEAT":
+            self.take_over(now)
         if message.get_type() == "STATUSTEXT":
             self._explain_refusal(now)
         self._try(lambda: self._answer(message, now), now)

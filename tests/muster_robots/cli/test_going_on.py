@@ -14,6 +14,7 @@ from muster.execution.final_state import FinalState, RobotsLeftError
 from muster.mission.yaml_writer import yaml_text
 from muster.running.fleet_registry import FLEETS, declares
 from muster.running.journal_file import journal_place, read_journal
+from muster_robots.cli.going_on import GoingOn
 
 
 class Lasting(WorldAsFleet):
@@ -154,6 +155,14 @@ def test_the_journal_of_another_mission_is_refused(interrupted, call, tmp_path, 
     code, _, err = call("--resume")
     assert code == BAD_INPUT
     assert re.search(r'\.journal: tasks: those of mission "mission", begun 2.*; expected the tasks of .*m\.yaml', err)
+
+
+def test_who_was_sent_off_and_is_not_heard_any_more_counts_as_moving(interrupted, there, place):
+    known = GoingOn(there, place, "yard", ["the yard"], True, False, before=interrupted)
+    never, heard = FinalState("r_9", "not heard", None, False), FinalState("r_0", "stands", (0.0, 0.0, 0.0), False)
+    (lost, *others) = known.judged([FinalState("r_0", "not heard", None, False), never, heard])
+    assert (lost.moving, lost.state) == (True, "not heard since the stop: it may be armed, or move")
+    assert others == [never, heard]
 
 
 def test_robots_that_a_refusal_leaves_armed_are_named(there, tmp_path, capsys):

@@ -12,10 +12,13 @@ import time
 import pytest
 from tests.muster_robots.mavlink.drones import Sky, mission
 
+import muster
 from muster.cli.exits import BAD_INPUT, DONE, STILL_MOVING
 from muster.cli.main import run
 from muster.mission.model import Origin
 from muster.motion.port import Waypoint
+from muster.running.journal import Journal
+from muster.running.journal_file import Header, read_journal
 from muster_robots.fleet_settings import FlightSettings
 from muster_robots.mavlink import MavlinkFleet
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
@@ -113,6 +116,38 @@ def test_a_drone_far_away_that_no_journal_knows_is_named(call, drone, capsys):
     assert "or give --recover" in told
     assert run([*call, "--arm", "--resume"]) == BAD_INPUT
     assert "expected a journal" in capsys.readouterr().err
+
+
+def test_a_run_goes_on_without_a_drone_that_is_not_heard_any_more(tmp_path):
+    there, ends, halt = mission(2), [], threading.Event()
+    sky, plan, path = Sky(there), muster.solve(there, iterations=50), tmp_path / "a.journal"
+    fleet, first = sky.fleet(there), Journal.begun(path, there, Header.of(there, plan, "mavlink", ["it"]), ())
+
+    def on_event(event):
+        ends.extend([event] * (event.kind == "ends"))
+        if ends:
+            halt.set()
+
+    muster.carry_out(there, plan, fleet, halt=halt, on_event=on_event, journal=first)
+    first.close()
+    fleet.close()
+    sky.ends.pop("r_1").close()
+    silent = sky.drones.pop("r_1")
+    endpoints = {**sky.endpoints, "r_1": "udpout:127.0.0.1:9"}
+    again = MavlinkFleet(there, endpoints, FlightSettings(arm=True), clock=sky.clock, wait=sky.wait)
+    try:
+        again.connect(5.0, again=True)
+        second = Journal.resumed(read_journal(path), there)
+        report = muster.carry_out(there, plan, again, journal=second)
+        second.close()
+        states = {state.robot: state.state for state in again.final_states()}
+    finally:
+        again.close()
+        sky.close()
+    assert sorted(report.tasks_done) == [task.id for task in there.tasks]
+    assert {row.robot for row in report.tasks if row.task not in {end.task for end in ends}} == {"r_0"}
+    assert states == {"r_0": "hovers, armed", "r_1": "not heard"}
+    assert silent.armed
 
 
 @pytest.mark.parametrize("kind", [PX4, ARDUPILOT])
