@@ -17,18 +17,17 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts, signals_interrupt
 from muster_robots.cli.going_on import GoingOn, going_on, recovered
+from muster_robots.cli.last_lines import LastLines, show_final_states
 from muster_robots.cli.real_robots import (
-    LastLines,
-    RealRunOptions,
     carried_out,
     planned,
     read_given_plan,
     real_options,
     reported,
     require_outputs,
-    show_final_states,
     start_in_time,
 )
+from muster_robots.cli.run_options import RealRunOptions
 from muster_robots.fleet_settings import MavlinkSettings
 
 if TYPE_CHECKING:

@@ -17,13 +17,14 @@ from muster.cli.options.common import Verb
 from muster.mission.errors import InputError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
+from muster_robots.cli.last_lines import LastLines, show_final_states
 
 if TYPE_CHECKING:
     from muster.execution.final_state import FinalState
     from muster.execution.fleet import Fleet
     from muster.running.journal import Journal
     from muster.running.journal_file import ReadJournal
-    from muster_robots.cli.real_robots import RealRunOptions
+    from muster_robots.cli.run_options import RealRunOptions
 
 
 def resume_option(verb: Verb) -> Verb:
@@ -193,7 +194,6 @@ def kept_journal(how: GoingOn, plan: Plan, options: RealRunOptions) -> Iterator[
 def left_robots_told(how: GoingOn) -> Iterator[None]:
     """Context manager that says, where robots are refused, which of them are armed or move, and what helps."""
     from muster.execution.final_state import RobotsLeftError
-    from muster_robots.cli.real_robots import LastLines
 
     try:
         yield
@@ -217,7 +217,6 @@ def recovered(
     from muster.execution.final_state import final_states_of
     from muster.running.bring_home import bring_home
     from muster.running.journal import Journal
-    from muster_robots.cli.real_robots import LastLines, show_final_states
 
     journal = None if how.before is None else Journal.resumed(how.before, how.mission)
     try:

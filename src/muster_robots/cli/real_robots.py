@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from muster.cli.exit_codes import Ending, exit_code_if, note_ending
+from muster.cli.exit_codes import Ending, exit_code_if
 from muster.cli.exits import INTERRUPTED
 from muster.cli.live_output import foxglove_option, print_event, require_free_port, shown_live
 from muster.cli.options.common import (
@@ -40,6 +40,8 @@ from muster.running.run_request import REAL, RunRequest
 from muster.running.wall_time import notes_on_start, planned_from, require_time_left
 from muster.state.reasons import is_no_loss
 from muster_robots.cli.going_on import GoingOn, kept_journal, recovered, resume_option
+from muster_robots.cli.last_lines import LastLines, show_final_states
+from muster_robots.cli.run_options import RealRunOptions
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
@@ -48,27 +50,6 @@ if TYPE_CHECKING:
     from muster.running.wall_time import MissionStart
 
 _FILE = click.Path(path_type=Path)
-
-
-@dataclass(frozen=True, kw_only=True)
-class RealRunOptions:
-    """The values of `real_options`: the request of the run, and what is no part of it but the mission."""
-
-    request: ObservedRun
-    plan: Path | None
-    planning: PlanningOptions
-    start: Path | None = None
-    fixed: Path | None = None
-    record: Path | None
-    html: Path | None
-    plot: Path | None
-    gantt: Path | None
-    foxglove: int | None
-    require_complete: bool
-    form: str
-    quiet: bool
-    verbose: bool
-    resume: str | None = None
 
 
 def real_options(
@@ -329,50 +310,3 @@ def reported(
         (Ending.INTERRUPTED, halt.is_set()),
         (Ending.TASKS_LOST, lost),
     )
-
-
-def show_final_states(states: Sequence[FinalState], *, asks: bool) -> None:
-    """Print a line for each robot; it concerns safety, so `--quiet` does not silence it.
-
-    Where the mission did not end as planned (`asks`), a line before them says what to do with robots that still move.
-    """
-    if asks and (moving := [state.robot for state in states if state.moving]):
-        todo = "land or stop them by their own controls or a ground station, and disarm them, or give --recover"
-        click.echo(f"still flying, driving or armed: {', '.join(moving)}; {todo}", err=True)
-    for state in states:
-        click.echo(str(state), err=True)
-
-
-class LastLines:
-    """Context manager that prints where robots are if an exception ends it: a refusal, an error, Ctrl-C, a signal.
-
-    Before robots were commanded, only those are printed that fly, drive or are armed all the same; afterwards all. The
-    exit code of the command is 4 if any does.
-
-    Attributes
-    ----------
-    begun : bool
-        Whether robots were commanded.
-    """
-
-    def __init__(self, final_states: Callable[[], Sequence[FinalState]], *, begun: bool = False) -> None:
-        self._final_states, self.begun = final_states, begun
-
-    def __enter__(self) -> LastLines:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
-        if kind is not None:
-            self.tell()
-
-    def tell(self) -> None:
-        """Print where robots are, and note for the exit code whether any moves."""
-        try:
-            states = self._final_states()
-        except MusterError as unknown:
-            click.echo(f"warning: where robots are is not known: {unknown}", err=True)
-            return
-        moving = [state for state in states if state.moving]
-        show_final_states(states if self.begun else moving, asks=True)
-        if moving:
-            note_ending(Ending.STILL_MOVING)

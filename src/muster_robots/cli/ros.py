@@ -22,9 +22,8 @@ from muster.mission.plan import Plan
 from muster.mission.reading.plan_reader import read_plan
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster_robots.cli.going_on import going_on, recovered
+from muster_robots.cli.last_lines import LastLines
 from muster_robots.cli.real_robots import (
-    LastLines,
-    RealRunOptions,
     carried_out,
     from_here,
     read_given_plan,
@@ -35,6 +34,7 @@ from muster_robots.cli.real_robots import (
     start_in_time,
 )
 from muster_robots.cli.ros_targets import TargetOptions, target_options
+from muster_robots.cli.run_options import RealRunOptions
 from muster_robots.fleet_settings import Ros1Settings
 
 if TYPE_CHECKING:

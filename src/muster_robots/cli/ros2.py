@@ -10,13 +10,13 @@ from muster.cli.options.common import MissionFile, mission_argument
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster_robots.cli.going_on import going_on
 from muster_robots.cli.real_robots import (
-    RealRunOptions,
     carried_out_from_here,
     read_given_plan,
     real_options,
     require_outputs,
 )
 from muster_robots.cli.ros_targets import TargetOptions, target_options
+from muster_robots.cli.run_options import RealRunOptions
 from muster_robots.fleet_settings import Ros2Settings
 
 

@@ -10,12 +10,12 @@ from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster.running.fleet_registry import FLEETS, settings_class
 from muster_robots.cli.going_on import going_on, left_robots_told
 from muster_robots.cli.real_robots import (
-    RealRunOptions,
     carried_out_from_here,
     read_given_plan,
     real_options,
     require_outputs,
 )
+from muster_robots.cli.run_options import RealRunOptions
 
 
 def _list(context: click.Context, _: click.Parameter, asked: bool) -> None:

@@ -21,7 +21,8 @@ from muster.running.observed_run import ObservedRun
 from muster.running.run_request import OPEN_FLEET
 from muster_robots.cli import real_robots as real
 from muster_robots.cli.going_on import GoingOn
-from muster_robots.cli.real_robots import RealRunOptions, carried_out, reported
+from muster_robots.cli.real_robots import carried_out, reported
+from muster_robots.cli.run_options import RealRunOptions
 
 ASKED = {
     **dict.fromkeys(("plan", "record", "html", "plot", "gantt", "foxglove")),
