@@ -107,6 +107,15 @@ def test_zeros_that_a_power_cut_leaves_at_the_end_are_left_out(path, there, plan
     assert read_journal(path) == whole
 
 
+def test_a_hole_that_a_power_cut_leaves_is_where_reading_ends(path, there, plan):
+    interrupted(path, there, plan, WorldAsFleet(there))
+    lines = path.read_bytes().split(b"\n")
+    lines[-3] = lines[-3][:20] + bytes(len(lines[-3]) - 20)
+    whole = read_journal(path).entries
+    path.write_bytes(b"\n".join(lines))
+    assert read_journal(path).entries == whole[:-2]
+
+
 def test_a_damaged_line_before_the_last_is_refused(path, there, plan):
     interrupted(path, there, plan, WorldAsFleet(there))
     lines = path.read_bytes().split(b"\n")

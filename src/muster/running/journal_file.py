@@ -173,19 +173,22 @@ def _last(kinds: list[str], kind: str) -> int:
 def read_journal(path: str | Path) -> ReadJournal:
     """Read a journal, up to a last line that a crash has cut short.
 
+    After a power cut the end that was not synced may have holes, which hold zeros: it is read up to the first one.
+
     Raises
     ------
     InputError
-        if the file cannot be read, is no journal, or a line before the last is damaged.
+        if the file cannot be read, is no journal, or a line before the last is damaged otherwise.
     """
     file = Path(path)
     try:
         data = file.read_bytes()
     except OSError as error:
         raise InputError([Finding(str(file), None, "", error.strerror or str(error), _EXPECTED)]) from None
-    texts = [text_of(line) for line in data.split(b"\n")[:-1]]
+    lines = data.split(b"\n")[:-1]
+    texts = [text_of(line) for line in lines]
     whole = next((k for k, text in enumerate(texts) if text is None), len(texts))
-    if any(text is not None for text in texts[whole:]):
+    if any(text is not None for text in texts[whole:]) and b"\0" not in lines[whole]:
         raise InputError([Finding(str(file), whole + 1, "", "a damaged line", _EXPECTED)])
     try:
         first, *rest = [json.loads(text) for text in texts[:whole] if text is not None]
@@ -193,7 +196,7 @@ def read_journal(path: str | Path) -> ReadJournal:
         entries = tuple({**e, "time_s": float(e["time_s"]), "kind": str(e["kind"])} for e in rest)
     except (ValueError, TypeError, KeyError):
         raise InputError([Finding(str(file), None, "", "another file, or an empty one", _EXPECTED)]) from None
-    return ReadJournal(file, header, entries, sum(len(line) + 1 for line in data.split(b"\n")[:whole]))
+    return ReadJournal(file, header, entries, sum(len(line) + 1 for line in lines[:whole]))
 
 
 def _header(first: Mapping[str, Any]) -> dict[str, Any]:

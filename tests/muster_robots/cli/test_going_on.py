@@ -28,6 +28,10 @@ class Lasting(WorldAsFleet):
             signal.raise_signal(signal.SIGINT)
         return super().advance(until_s)
 
+    def stop(self):
+        for port in self.ports.values():
+            port.cancel()
+
 
 @pytest.fixture
 def there(tmp_path):
@@ -121,8 +125,18 @@ def test_robots_are_brought_home_and_a_new_run_begins(interrupted, call, fleet, 
     told = json.loads(out)
     assert [row["robot"] for row in told["robots"]] == ["r_0", "r_1"]
     assert told["not_home"] == {}
-    assert err.splitlines()[-2].startswith("r_0: stands; at (0.0")
+    assert err.splitlines()[-2].startswith("r_0: stands; at (")
+    assert fleet.ports["r_0"].telemetry().position[:2] == pytest.approx((0.0, 0.0), abs=0.5)
     assert call()[0] == DONE
+
+
+def test_on_their_way_home_robots_stay_at_ctrl_c_and_the_run_goes_on(interrupted, call, fleet, there):
+    fleet.interrupts_at = fleet.time_s + 1.0
+    code, _, err = call("--recover")
+    assert code == INTERRUPTED
+    assert "interrupted; robots were told to stay where they are" in err
+    assert call()[0] == BAD_INPUT
+    assert call("--resume")[0] == DONE
 
 
 def test_robots_are_brought_home_without_a_journal(fleet, call, place):

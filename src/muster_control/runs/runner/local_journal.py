@@ -7,6 +7,7 @@ number in the log, too, and `tick` ends those that the server takes all or none.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from muster.state.recovery import ORDER
 from muster.state.words import words_of
 from muster_control.runs.runner.pipe import Outbox
 
+_log = logging.getLogger("muster.runs")
 _TICK = "tick"
 _STATES = {"pause": True, "resume": False}
 
@@ -123,7 +125,9 @@ def _later_entries(path: Path, header: Header, seq: int) -> tuple[list[Mapping[s
     """The entries of a file after a number, and how much of the file is whole; none where it is of another run."""
     try:
         found = read_journal(path)
-    except InputError:
+    except InputError as error:
+        if path.exists():
+            _log.warning("%s; what the server has not taken is not known", error)
         return [], 0
     same = found.header.parts == header.parts and found.header.claims == header.claims
     if not same:
