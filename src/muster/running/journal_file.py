@@ -225,18 +225,14 @@ class JournalFile:
 
     def __init__(self, path: Path, header: Header | None, whole_bytes: int = 0) -> None:
         self.path, self._dirty = path, False
-        new = path if header is None else path.with_name(path.name + ".new")
         try:
             path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            how = os.O_WRONLY | os.O_APPEND | (os.O_CREAT | os.O_TRUNC if header is not None else 0)
-            self._file = os.open(new, how | getattr(os, "O_CLOEXEC", 0), 0o600)
+            if header is not None:
+                _write_first_line(path, header)
+            how = os.O_WRONLY | os.O_APPEND | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+            self._file = os.open(path, how)
             if header is None:
                 os.ftruncate(self._file, whole_bytes)
-            else:
-                self.append({"schema": SCHEMA, **vars(header)})
-                self.sync()
-                new.replace(path)  # the journal before is there until this one is
-                _sync_folder(path.parent)
         except OSError as error:
             raise InputError([Finding(str(path), None, "", error.strerror or str(error), "a file to write")]) from None
 
@@ -261,6 +257,17 @@ class JournalFile:
         """Remove the file: it cannot be written any more, and what it says is not true for long."""
         with suppress(OSError):
             self.path.unlink()
+
+
+def _write_first_line(path: Path, header: Header) -> None:
+    """Write and sync a file that has the header alone; the file before is there until this one is whole."""
+    new = path.with_name(path.name + ".new")
+    with os.fdopen(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
+        file.write(checked_line(json_bytes({"schema": SCHEMA, **vars(header)})))
+        file.flush()
+        os.fsync(file.fileno())
+    new.replace(path)
+    _sync_folder(path.parent)
 
 
 def _sync_folder(folder: Path) -> None:

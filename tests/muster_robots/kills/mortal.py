@@ -31,14 +31,11 @@ class MortalFile(JournalFile):
     """A journal whose process dies. After a power cut a part of what was not synced is lost."""
 
     def __init__(self, reaper, path, header, whole_bytes=0):
-        self._reaper, self._synced = reaper, 0
+        self._reaper = reaper
         super().__init__(path, header, whole_bytes)
         self._synced = path.stat().st_size
 
     def append(self, line):
-        if self._synced == 0:  # the header, in a file that takes its place when it is whole
-            super().append(line)
-            return
         before = self.path.stat().st_size
 
         def torn():
@@ -49,10 +46,9 @@ class MortalFile(JournalFile):
         super().append(line)
 
     def sync(self):
-        if self._synced:
-            self._reaper.step(lambda: self._cut(self.path.stat().st_size))
+        self._reaper.step(lambda: self._cut(self.path.stat().st_size))
         super().sync()
-        self._synced = self.path.stat().st_size if self._synced else 0
+        self._synced = self.path.stat().st_size
 
     def close(self):
         if not self._reaper.dead:
