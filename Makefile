@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: house standing demo test test-all test-alone quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-byzantine campaign-model campaign-goods campaign-server campaign-faults fault-flights campaign-api campaign-coverage network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
+.PHONY: house standing demo test test-all test-alone quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-byzantine campaign-model campaign-goods campaign-server campaign-faults fault-flights campaign-api campaign-coverage campaign-kills network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -88,6 +88,9 @@ campaign-faults: $(VENV)/developed
 
 fault-flights: $(VENV)/developed
 	$(BIN)/python -m tests.muster_robots.mavlink.fault_flights $(CAMPAIGN_FLAGS)
+
+campaign-kills: $(VENV)/developed
+	$(BIN)/python -m tests.muster_robots.kills $(CAMPAIGN_FLAGS)
 
 campaign-coverage: $(VENV)/developed
 	MUSTER_AREAS=$(or $(CAMPAIGN_FLAGS),200) $(BIN)/python -m pytest tests/motion/areas/test_coverage_path.py

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import replace
+from contextlib import closing
 from functools import partial
 from typing import Any
 
+from muster.execution.final_state import RobotsLeftError
 from muster.execution.fleet import Fleet
-from muster.mission.errors import ParameterError
+from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
 from muster.running.fleet_type import AIR, BATTERY, CHARGES, GROUND, HOLDS, JOINS, RESUMES, RETURNS, FleetType, Opened
 from muster.running.live import wait_for_robots
@@ -16,20 +17,17 @@ from muster_robots.claims import mavlink_claims, ros1_claims, ros2_claims
 from muster_robots.fleet_settings import MavlinkSettings, Ros1Settings, Ros2Settings
 from muster_robots.ros1.extra import require_rospy
 
-_ANYWHERE_M = 1e6
-"""After a crash drones are where they are, in the air maybe."""
 
-
-def open_ros1(mission: Mission, settings: Ros1Settings, halt: threading.Event, _again: bool) -> Opened:
+def open_ros1(mission: Mission, settings: Ros1Settings, halt: threading.Event, again: bool) -> Opened:
     from muster_robots.ros1.fleet import Ros1Fleet
     from muster_robots.ros1.node import become_node
 
     become_node("muster", settings.master)
-    return _heard(Ros1Fleet(mission, settings), settings.wait_s, halt), _nothing
+    return _heard(Ros1Fleet(mission, settings), settings.wait_s, halt, some=again), _nothing
 
 
-def open_ros2(mission: Mission, settings: Ros2Settings, halt: threading.Event, _again: bool) -> Opened:
-    return _heard(ros2_fleet(mission, settings), settings.wait_s, halt, NEEDED[settings.give]), _nothing
+def open_ros2(mission: Mission, settings: Ros2Settings, halt: threading.Event, again: bool) -> Opened:
+    return _heard(ros2_fleet(mission, settings), settings.wait_s, halt, NEEDED[settings.give], some=again), _nothing
 
 
 NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
@@ -58,19 +56,24 @@ def open_mavlink(mission: Mission, settings: MavlinkSettings, _halt: threading.E
 
     if not settings.arm:
         raise ParameterError("arm: missing; expected true: without it nothing flies")
-    how = replace(settings, far_m=_ANYWHERE_M) if again else settings
-    fleet = MavlinkFleet(mission, how.endpoints, how, height_m=how.height_m)
+    fleet = MavlinkFleet(mission, settings.endpoints, settings, height_m=settings.height_m)
     try:
-        fleet.connect(how.wait_s)
+        fleet.connect(settings.wait_s, again=again)
+    except MusterError as error:
+        with closing(fleet):
+            states = fleet.final_states()
+        if any(state.moving for state in states):
+            raise RobotsLeftError(str(error), states) from error
+        raise
     except BaseException:
         fleet.close()
         raise
-    return fleet, _nothing if how.at_end == "hold" else partial(fleet.end, how.at_end)
+    return fleet, _nothing if settings.at_end == "hold" else partial(fleet.end, settings.at_end)
 
 
-def _heard(fleet: Any, wait_s: float, halt: threading.Event, needed: str = "its pose") -> Fleet:
+def _heard(fleet: Any, wait_s: float, halt: threading.Event, needed: str = "its pose", *, some: bool = False) -> Fleet:
     try:
-        wait_for_robots(fleet, halt, wait_s, needed)
+        wait_for_robots(fleet, halt, wait_s, needed, some=some)
     except BaseException:
         fleet.close()
         raise

@@ -25,6 +25,7 @@ from muster.model.rules.team import waits_for_team, waits_to_start_with
 from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 from muster.state import MissionState
+from muster.state.mission_state import AT_MOST_ONCE
 from muster.state.robot_events import NoWayToEnd, Returns, RobotAtEnd, RobotGoesRound, RobotMakesRoom
 from muster.state.station_events import StationUnreachable
 from muster.state.task_events import Arrives, Ends, SetsOut, Starts, TaskRefused, Waits
@@ -306,7 +307,8 @@ class Dispatch:
             return
         may_begin = self._ledger.may_begin(task) and not self._beginning.must_ask(task, state.robot)
         state.refilled_idle = False
-        state.works = self._peers is None and may_begin
+        once = self._ledger.tasks[task].across_partition == AT_MOST_ONCE  # its begin is known before work is ordered
+        state.works = self._peers is None and may_begin and not once
         state.at_home = False
         state.usage_to_task = state.used - state.used_before + self._planned_usage(state, task)
         waypoints = [*there, *(delayed(work, delay) if state.works else ())]

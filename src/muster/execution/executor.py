@@ -287,6 +287,12 @@ class Executor:
             if state.activity is Activity.WORKING:
                 state.send_again(self.now_s)
 
+    def take_out_unheard(self) -> None:
+        """Let robots that have not said where they are take no part until they are heard, as silent ones."""
+        for state in self._present:
+            if state.port.telemetry() is None:
+                self._changes.exclude(state, RobotSilent, self.now_s)
+
     def require_room(self, event: Event) -> None:
         """Raise ParameterError where an event brings a robot that cannot join, or puts one where it cannot stand.
 

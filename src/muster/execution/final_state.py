@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from muster.execution.fleet import Fleet
@@ -48,6 +48,20 @@ class FinalState:
         if self.position is None:
             return f"{self.robot}: {self.state}; position unknown"
         return f"{self.robot}: {self.state}; at ({', '.join(f'{c:.2f}' for c in self.position)})"
+
+
+class RobotsLeftError(MusterError):
+    """A refusal to command robots whose states are known: some may be armed, or move.
+
+    Attributes
+    ----------
+    states : tuple of FinalState
+        Where robots are, and what they do.
+    """
+
+    def __init__(self, message: str, states: Sequence[FinalState]) -> None:
+        super().__init__(message)
+        self.states = tuple(states)
 
 
 def final_states_of(fleet: Fleet, mission: Mission) -> list[FinalState]:

@@ -146,6 +146,10 @@ class RobotPort(Protocol):
         ...
 
 
+BeforeOrder = Callable[[str, Sequence[Waypoint]], None]
+"""Receives an order before it is sent: whose it is, and its way points, none where the robot is to stay."""
+
+
 class TranslatedPort:
     """A port that changes each telemetry report; orders pass unchanged.
 
@@ -153,10 +157,14 @@ class TranslatedPort:
     ----------
     translate
         returns the changed report.
+    before_order
+        receives each order before it passes.
     """
 
-    def __init__(self, port: RobotPort, translate: Callable[[Telemetry], Telemetry]) -> None:
-        self._port, self._retell = port, translate
+    def __init__(
+        self, port: RobotPort, translate: Callable[[Telemetry], Telemetry], before_order: BeforeOrder | None = None
+    ) -> None:
+        self._port, self._retell, self._before_order = port, translate, before_order
 
     @property
     def robot(self) -> str:
@@ -164,10 +172,14 @@ class TranslatedPort:
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
         """See `RobotPort`."""
+        if self._before_order is not None:
+            self._before_order(self.robot, waypoints)
         return self._port.send(waypoints)
 
     def cancel(self) -> int:
         """See `RobotPort`."""
+        if self._before_order is not None:
+            self._before_order(self.robot, ())
         return self._port.cancel()
 
     def telemetry(self) -> Telemetry | None:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: ObservedRun) -> Report:
     """Carry a plan out with real robots, in real time, to its end. The tasks left are planned again when robots fail.
 
+    With `recover` robots are brought home, and no task is done.
+
     Parameters
     ----------
     fleet
@@ -44,6 +46,7 @@ def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: Obser
         if the plan names robots or tasks that the mission does not have, a robot has no port, or the mission's time is
         over; if another run on this machine commands the robots of a fleet that is named.
     """
+    from muster.running.bring_home import brought_home
     from muster.running.live import carry_out_live
 
     require_mission(mission)
@@ -54,9 +57,13 @@ def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: Obser
         _opened(fleet, mission, request) as (robots, at_end),
         recorded(
             mission, request.record, request.observers, lambda error: remarks.append(f"no more is kept: {error}")
-        ) as recorder,
+        ) as others,
     ):
-        report = carry_out_live(mission, plan, robots, request, recorder=recorder)
+        recorder = others if request.journal is None else request.journal.with_others(others)
+        if request.recover:
+            report = brought_home(mission, plan, robots, request)
+        else:
+            report = carry_out_live(mission, plan, robots, request, recorder=recorder)
         at_end()
     return replace(report, remarks=(*report.remarks, *remarks))
 
@@ -73,5 +80,6 @@ def _opened(fleet: Fleet | str, mission: Mission, request: ObservedRun) -> Itera
     from muster.running.claimed_fleet import claimed_fleet
 
     assert request.halt is not None
-    with claimed_fleet(mission, request, request.halt) as opened:
+    goes_on = request.recover or (request.journal is not None and request.journal.state is not None)
+    with claimed_fleet(mission, request, request.halt, again=goes_on) as opened:
         yield opened

@@ -15,8 +15,15 @@ from muster.running.run_request import RunRequest
 
 
 @contextmanager
-def claimed_fleet(mission: Mission, request: RunRequest, halt: threading.Event) -> Iterator[Opened]:
+def claimed_fleet(
+    mission: Mission, request: RunRequest, halt: threading.Event, *, again: bool = False
+) -> Iterator[Opened]:
     """Hold the claims of a request's fleet, and its robots, while the block runs.
+
+    Parameters
+    ----------
+    again : bool
+        Whether the mission is under way already; see `fleet_ready`.
 
     Raises
     ------
@@ -24,6 +31,6 @@ def claimed_fleet(mission: Mission, request: RunRequest, halt: threading.Event) 
         if another run on this machine commands its robots; as `fleet_ready`.
     """
     with robots_claimed(claims_of_request(request)):
-        fleet, at_end = fleet_ready(request.world, mission, request.settings, halt, again=False)
+        fleet, at_end = fleet_ready(request.world, mission, request.settings, halt, again=again)
         with closing(fleet):
             yield fleet, at_end

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from muster.execution.fleet import Fleet, has_simulated_time, is_paused
 from muster.mission.model import Event, Mission
 from muster.mission.system.clock import Clock, VirtualClock, WallClock
-from muster.motion.port import RobotPort, Telemetry, TranslatedPort
+from muster.motion.port import BeforeOrder, RobotPort, Telemetry, TranslatedPort, Waypoint
 from muster.running.wall_time import MissionStart
 
+BeforeOrderAt = Callable[[float, str, Sequence[Waypoint]], None]
+"""Receives an order before it is sent: the mission's time, whose it is, its way points, none where it is to stay."""
 BEHIND_S = 10.0
 """Seconds by which a fleet's clock may fall behind the wall clock: the clock of a machine that slept stood still."""
 
@@ -43,13 +46,22 @@ class FleetWithMissionClock:
         Time of the mission's clock now; before the start it is negative.
     wall : Clock, optional
         The wall clock. Without one the fleet's clock alone counts, as that of a simulator.
+    before_order : callable, optional
+        Receives each order before the robot does: when, whose, and its way points, none where the robot is to stay.
     """
 
-    def __init__(self, fleet: Fleet, begin_s: float = 0.0, wall: Clock | None = None) -> None:
+    def __init__(
+        self,
+        fleet: Fleet,
+        begin_s: float = 0.0,
+        wall: Clock | None = None,
+        before_order: BeforeOrderAt | None = None,
+    ) -> None:
         self._fleet, self._off_s = fleet, fleet.time_s - begin_s
         self._wall, self._zero_s = wall, 0.0 if wall is None else wall.now() - begin_s
         self._was_paused = False
-        self.ports: Mapping[str, RobotPort] = _Ports(fleet, lambda: self._off_s)
+        orders = None if before_order is None else partial(self._tell_order, before_order)
+        self.ports: Mapping[str, RobotPort] = _Ports(fleet, lambda: self._off_s, orders)
 
     @property
     def time_s(self) -> float:
@@ -71,6 +83,9 @@ class FleetWithMissionClock:
     def close(self) -> None:
         self._fleet.close()
 
+    def _tell_order(self, tell: BeforeOrderAt, robot: str, waypoints: Sequence[Waypoint]) -> None:
+        tell(self.time_s, robot, waypoints)
+
     def _since_start_s(self) -> float:
         now = self._fleet.time_s - self._off_s
         behind_s = 0.0 if self._wall is None else self._wall.now() - self._zero_s - now
@@ -86,11 +101,11 @@ class FleetWithMissionClock:
 class _Ports(Mapping[str, RobotPort]):
     """Those that are discovered later are in it as soon as they are."""
 
-    def __init__(self, fleet: Fleet, off_s: Callable[[], float]) -> None:
-        self._fleet, self._off_s = fleet, off_s
+    def __init__(self, fleet: Fleet, off_s: Callable[[], float], before_order: BeforeOrder | None) -> None:
+        self._fleet, self._off_s, self._before_order = fleet, off_s, before_order
 
     def __getitem__(self, robot: str) -> RobotPort:
-        return TranslatedPort(self._fleet.ports[robot], self._since_it_began)
+        return TranslatedPort(self._fleet.ports[robot], self._since_it_began, self._before_order)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._fleet.ports)

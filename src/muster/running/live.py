@@ -30,7 +30,7 @@ from muster.mission.supported_features import require_supported
 from muster.mission.system.clock import Clock
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.motion.port import RobotPort
-from muster.running.fleet_clock import FleetWithMissionClock, clock_of, start_of
+from muster.running.fleet_clock import BeforeOrderAt, FleetWithMissionClock, clock_of, start_of
 from muster.running.fleet_in_traffic import FleetInTraffic
 from muster.running.fleet_registry import FLEETS
 from muster.running.fleet_type import HOLDS
@@ -67,6 +67,7 @@ def carry_out_live(
     request: ObservedRun | None = None,
     *,
     recorder: Recorder | None = None,
+    before_order: BeforeOrderAt | None = None,
     **how: Any,
 ) -> Report:
     """Let a fleet carry a plan out to its end, or until `halt` is set; then robots stay where they are.
@@ -81,6 +82,8 @@ def carry_out_live(
         how the plan is carried out; without it the fields of `ObservedRun` are keyword arguments.
     recorder
         receives all events, and the positions that robots report.
+    before_order
+        as of `Live`; of a run with a journal that receives orders.
 
     Raises
     ------
@@ -89,7 +92,17 @@ def carry_out_live(
         over.
     """
     request = ObservedRun(**{"world": OPEN_FLEET, **how}) if request is None else request
-    live = Live(mission, plan, fleet, request, recorder=recorder, wall=request.wall)
+    journal = request.journal
+    live = Live(
+        mission,
+        plan,
+        fleet,
+        request,
+        recorder=recorder,
+        state=None if journal is None else journal.state,
+        wall=request.wall,
+        before_order=before_order if journal is None else journal.on_order,
+    )
     halt, on_event, told = request.halt or threading.Event(), request.on_event, 0
     try:
         while not halt.is_set():
@@ -123,6 +136,8 @@ class Live:
         what is known of a mission that goes on after a stop.
     wall
         the wall clock; by default the machine's, or of a fleet with simulated time that clock alone.
+    before_order
+        receives each order before the robot does: when, whose, and its way points, none where the robot is to stay.
 
     Raises
     ------
@@ -143,6 +158,7 @@ class Live:
         recorder: Recorder | None = None,
         state: MissionState | None = None,
         wall: Clock | None = None,
+        before_order: BeforeOrderAt | None = None,
         **how: Any,
     ) -> None:
         request = ObservedRun(**{"world": OPEN_FLEET, **how}) if request is None else request
@@ -174,7 +190,8 @@ class Live:
         world = None if robot_paths is None else robot_paths.world
         manager = manager_for(traffic, mission, seed=seed, world=world, real=True)
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
-        self._fleet = FleetWithMissionClock(managed, begin_s, None if has_simulated_time(fleet) else clock)
+        of_day = None if has_simulated_time(fleet) else clock
+        self._fleet = FleetWithMissionClock(managed, begin_s, of_day, before_order)
         self._robots, self._recorder, self._stood = fleet, recorder, False
         travel = travel_of(mission, robot_paths)
         replan, self._standing = planning_of(mission, request.duty, request.planning, travel, seed, repeatable=False)
@@ -199,6 +216,8 @@ class Live:
             manager.expect(self.executor.outlook)
         if state is None:
             self._say_start(mission, begin_s)
+        else:
+            self._stop_those_sent()
         if ground is not None:
             self.executor.plan_again(GroundUnknown(cell_m=ground.cell_m))
             ground.begin(self._fleet.ports, self.executor)
@@ -288,6 +307,16 @@ class Live:
         """Return why what needs an ability is refused; empty for a fleet that is open: it is not known by name."""
         return "" if self._kind is None else self._kind.lacks(ability)
 
+    def _stop_those_sent(self) -> None:
+        """Robots that the run before has sent off stay where they are until they are sent again: nobody led them.
+
+        Who is not heard takes no part until it is.
+        """
+        for robot in self.executor.crew.values():
+            if robot.known.left_s is not None:
+                robot.stop(self.executor.now_s)
+        self.executor.take_out_unheard()
+
     def _say_start(self, mission: Mission, begin_s: float) -> None:
         """Emit when the mission starts; begun late, what is left in time is planned again."""
         begins = MissionBegins(
@@ -324,22 +353,36 @@ class Live:
 
 
 class _Heard(Protocol):
+    @property
+    def ports(self) -> Mapping[str, RobotPort]:
+        """See `Fleet`."""
+        ...
+
     def robots_not_ready(self) -> Mapping[str, str]:
         """Robots of the mission that have not said where they are, and what is missing."""
         ...
 
 
-def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float, needed: str = "its pose") -> None:
+def wait_for_robots(
+    fleet: _Heard, halt: threading.Event, wait_s: float, needed: str = "its pose", *, some: bool = False
+) -> None:
     """Until nothing is missing of the mission's robots, of what is needed, or `halt` is set.
+
+    Parameters
+    ----------
+    some
+        whether those that are ready when the time is over are enough, as of a mission that is under way.
 
     Raises
     ------
     NetworkError
-        if something is, when the time is over.
+        if something is missing when the time is over.
     """
     until = time.monotonic() + wait_s
     while (robots_not_ready := fleet.robots_not_ready()) and not halt.is_set():
         if time.monotonic() > until:
+            if some and len(robots_not_ready) < len(fleet.ports):
+                return
             robot, why = next(iter(robots_not_ready.items()))
             more = f" (and {len(robots_not_ready) - 1} more)" if len(robots_not_ready) > 1 else ""
             raise NetworkError(f"robot {robot}: {why} within {wait_s:g} s{more}; expected {needed}")

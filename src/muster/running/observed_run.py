@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from muster.execution import ExecutionEvent, Recorder, Standing
     from muster.mission.system.clock import Clock
     from muster.running.camera_search import OnLook
+    from muster.running.journal import Journal
     from muster.running.run_outputs import BegunOutput, OnWorld, WorldRecorder
     from muster.simulation import SimulatedWorld
     from muster.simulation.cameras import Look
@@ -59,6 +60,9 @@ class ObservedRun(RunRequest):
         When it is set, the run ends; robots stay where they are.
     wall : Clock, optional
         The wall clock, by which the clock of real robots goes; by default the machine's.
+    journal : Journal, optional
+        What happens and what is ordered, synced to disk before robots get orders (`muster.running.journal`). A run
+        whose journal holds one that was interrupted goes on with that.
     """
 
     standing: Standing | None = None
@@ -71,6 +75,7 @@ class ObservedRun(RunRequest):
     on_world: OnWorld | None = None
     halt: threading.Event | None = None
     wall: Clock | None = None
+    journal: Journal | None = None
 
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> Iterable[Fault]:

@@ -166,6 +166,12 @@ class RunRequest(Settings):
         default="given",
         counts=REAL,
     )
+    recover: bool = spec(
+        Flag(),
+        "bring all robots home, or as their fleet ends flights, and do no task: after a run that was interrupted",
+        default=False,
+        counts=REAL,
+    )
     accept_partial: bool = spec(
         Flag(),
         "accept a plan that the time limit cut short; else it is not carried out",

@@ -11,7 +11,9 @@ from muster.state.checkpoint import restored
 from muster.state.event import event_of
 from muster.state.mission_state import MissionState
 
-_OF_THE_RUN = ("report", "command")
+ORDER = "order"
+"""The kind of entries that say where a robot is sent: written before it is sent there."""
+_OF_THE_RUN = ("report", "command", ORDER)
 """Kinds of log entries that are no events of the mission."""
 
 

@@ -106,6 +106,7 @@ class RunSession:
         self.subscribers.end()
         if not self._closing:
             await self.log_writer.drained()
+            self._runner_input.journal.unlink(missing_ok=True)
         await self.log_writer.close()
 
     def ask(self, action: Action) -> bool:

@@ -11,6 +11,7 @@ import base64
 import logging
 import zlib
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from muster_control.contract import Checkpoint, Entry, MissionVersion, Run
@@ -33,6 +34,11 @@ class RunnerInput:
         self.bodies: Mapping[str, Any] | None = None
         self._work: dict[str, Any] | None = None
         self._tracked_s = 0.0
+
+    @property
+    def journal(self) -> Path:
+        """The file that a runner of real robots keeps while the run is under way."""
+        return Path(f"{self._lock}-{self._run.id}.journal")
 
     @property
     def known(self) -> bool:
@@ -86,6 +92,8 @@ class RunnerInput:
             "until_s": max(self._tracked_s, run.time_s) if self.goes_on else 0.0,
             "tracked_s": self._tracked_s,
             "lock": self._lock,
+            "journal": str(self.journal),
+            "at": None if run.at is None else run.at.isoformat(),
         }
         return json_line(message)
 

@@ -5,30 +5,33 @@ from __future__ import annotations
 import threading
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
+from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
 from muster.cli.exit_codes import Ending, exit_code_if
 from muster.cli.options.common import MissionFile, mission_argument
+from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts, signals_interrupt
+from muster_robots.cli.going_on import GoingOn, going_on, recovered
+from muster_robots.cli.last_lines import LastLines, show_final_states
 from muster_robots.cli.real_robots import (
-    LastLines,
-    RealRunOptions,
     carried_out,
     planned,
     read_given_plan,
     real_options,
     reported,
     require_outputs,
-    show_final_states,
     start_in_time,
 )
+from muster_robots.cli.run_options import RealRunOptions
 from muster_robots.fleet_settings import MavlinkSettings
 
 if TYPE_CHECKING:
+    from muster.execution.final_state import FinalState
     from muster_robots.mavlink import MavlinkFleet
     from muster_robots.mavlink.autopilots import AtEnd
     from muster_robots.mavlink.dry_run import Line
@@ -49,22 +52,41 @@ def command(mission: MissionFile, options: RealRunOptions) -> int:
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
-    given, settings = read_given_plan(options, loaded), options.request.settings
+    given, settings, how = read_given_plan(options, loaded), options.request.settings, going_on(options, loaded)
     with ExitStack() as stack:
         stack.enter_context(robots_claimed(claims_of_request(options.request)))
         made = MavlinkFleet(loaded, settings.endpoints, settings, height_m=settings.height_m)
         fleet = stack.enter_context(closing(made))
         stack.enter_context(signals_interrupt())
-        last_lines = stack.enter_context(LastLines(fleet.final_states))
-        start = start_in_time(loaded, fleet, options)
-        plan = given or planned(options, loaded, start)
-        if not options.quiet:
+        last_lines = stack.enter_context(LastLines(lambda: how.judged(fleet.final_states())))
+        plan = None if how.again else given or planned(options, loaded, start_in_time(loaded, fleet, options))
+        if plan is not None and not options.quiet:
             _warn(loaded, plan, settings.height_m)
-        fleet.connect(settings.wait_s)
-        if not settings.arm:
+        _connect(fleet, how, settings)
+        if how.again:
+            _require_arm(how, settings)
+        elif plan is not None and not settings.arm:
             return _show(loaded, plan, fleet, options.form)
+        how.require_nobody_left(fleet.final_states())
         last_lines.begun = True
-        return _fly(loaded, plan, fleet, settings.at_end, options)
+        return _fly(plan, fleet, how, options)
+
+
+def _connect(fleet: MavlinkFleet, how: GoingOn, settings: MavlinkSettings) -> None:
+    """Hear all drones; where a drone is refused, an interrupted run that has left it there is the reason."""
+    try:
+        fleet.connect(settings.wait_s, again=how.again)
+    except MusterError:
+        if how.interrupted is not None:
+            how.require_nobody_left(fleet.final_states())
+        raise
+
+
+def _require_arm(how: GoingOn, settings: MavlinkSettings) -> None:
+    if not settings.arm:
+        asked = "--resume" if how.resumes else "--recover"
+        done = "" if how.before is None else f" ({how.path}: {how.before.progress})"
+        raise ParameterError(f"{asked} given without --arm{done}; expected both: without --arm nothing is sent")
 
 
 def _warn(mission: Mission, plan: Plan, height: float | None) -> None:
@@ -120,12 +142,20 @@ def _degrees(value: float | None) -> str:
     return "-" if value is None else f"{value:.7f}"
 
 
-def _fly(mission: Mission, plan: Plan, fleet: MavlinkFleet, at_end: AtEnd, options: RealRunOptions) -> int:
+def _fly(plan: Plan | None, fleet: MavlinkFleet, how: GoingOn, options: RealRunOptions) -> int:
+    at_end: AtEnd = options.request.settings.at_end
+
+    def states() -> list[FinalState]:
+        return how.judged(fleet.final_states())
+
     with ctrl_c_halts(TO_END) as halt:
-        report = carried_out(mission, plan, fleet, options, halt, at_end=lambda: _end(fleet, at_end, halt))
+        if how.recovers:
+            return recovered(how, fleet, options, halt, lambda: None)
+        end = partial(_end, fleet, at_end, halt)
+        report = carried_out(how.mission, plan, fleet, how, options, halt, states, at_end=end)
     for fault in fleet.faults:
         click.echo(str(fault), err=True)
-    return reported(mission, report, options, halt, "drones were told to hover", fleet.final_states())
+    return reported(how.mission, report, options, halt, "drones were told to hover", states())
 
 
 def _end(fleet: MavlinkFleet, at_end: AtEnd, halt: threading.Event) -> None:

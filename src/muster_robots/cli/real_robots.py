@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from muster.cli.exit_codes import Ending, exit_code_if, note_ending
+from muster.cli.exit_codes import Ending, exit_code_if
 from muster.cli.exits import INTERRUPTED
 from muster.cli.live_output import foxglove_option, print_event, require_free_port, shown_live
 from muster.cli.options.common import (
@@ -39,6 +39,9 @@ from muster.running.observed_run import ObservedRun
 from muster.running.run_request import REAL, RunRequest
 from muster.running.wall_time import notes_on_start, planned_from, require_time_left
 from muster.state.reasons import is_no_loss
+from muster_robots.cli.going_on import GoingOn, kept_journal, recovered, resume_option
+from muster_robots.cli.last_lines import LastLines, show_final_states
+from muster_robots.cli.run_options import RealRunOptions
 
 if TYPE_CHECKING:
     from muster.execution import Recorder, Report
@@ -47,26 +50,6 @@ if TYPE_CHECKING:
     from muster.running.wall_time import MissionStart
 
 _FILE = click.Path(path_type=Path)
-
-
-@dataclass(frozen=True, kw_only=True)
-class RealRunOptions:
-    """The values of `real_options`: the request of the run, and what is no part of it but the mission."""
-
-    request: ObservedRun
-    plan: Path | None
-    planning: PlanningOptions
-    start: Path | None = None
-    fixed: Path | None = None
-    record: Path | None
-    html: Path | None
-    plot: Path | None
-    gantt: Path | None
-    foxglove: int | None
-    require_complete: bool
-    form: str
-    quiet: bool
-    verbose: bool
 
 
 def real_options(
@@ -89,6 +72,7 @@ def real_options(
         planning_options(time_limit_s=2.0, carries_out=True),
         request_options(RunRequest, REAL, without),
         *(() if settings is None else (request_options(settings),)),
+        resume_option,
         record_option,
         drawing_options,
         foxglove_option,
@@ -196,9 +180,9 @@ def from_here(mission: Mission, fleet: Fleet) -> Mission:
 
 
 def carried_out_from_here(
-    mission: Mission,
     fleet: Fleet,
     given: Plan | None,
+    how: GoingOn,
     options: RealRunOptions,
     halt: threading.Event,
     at_end: Callable[[], None] = lambda: None,
@@ -209,49 +193,77 @@ def carried_out_from_here(
     ----------
     given
         the plan; None: one is made now.
+    how
+        the mission, and how this call relates to a run before it.
     at_end
         see `carried_out`.
     """
     from muster.execution.final_state import final_states_of
 
-    if not halt.is_set():
+    mission = there = how.mission
+
+    def states() -> Sequence[FinalState]:
+        return how.judged(final_states_of(fleet, there))
+
+    if how.recovers and not halt.is_set():
+        return recovered(how, fleet, options, halt, at_end)
+    if how.interrupted is not None:
+        with LastLines(states):
+            how.require_nobody_left(states())
+    if not how.resumes and not halt.is_set():
         start = start_in_time(mission, fleet, options)
         there = from_here(mission, fleet)
-        plan = given or planned(options, there, start)
+        given = given or planned(options, there, start)
     if halt.is_set():
         click.echo("interrupted; nothing was sent", err=True)
         return INTERRUPTED
-    with LastLines(lambda: final_states_of(fleet, there), begun=True):
-        report = carried_out(there, plan, fleet, options, halt, at_end=at_end)
+    with LastLines(states, begun=True):
+        report = carried_out(there, given, fleet, how, options, halt, states, at_end=at_end)
         left = "the robots were told to stay where they are"
-        return reported(there, report, options, halt, left, final_states_of(fleet, there))
+        return reported(there, report, options, halt, left, states())
 
 
 def carried_out(
     mission: Mission,
-    plan: Plan,
+    plan: Plan | None,
     fleet: Fleet,
+    how: GoingOn,
     options: RealRunOptions,
     halt: threading.Event,
+    final_states: Callable[[], Sequence[FinalState]],
     observers: Sequence[Recorder] = (),
     at_end: Callable[[], None] = lambda: None,
 ) -> Report:
-    """Carry a plan out; its events are printed, recorded and shown as the options say.
+    """Carry a plan out, or go on with a run; its events are printed, recorded and shown as the options say.
 
     Parameters
     ----------
+    plan
+        the plan of a run that begins; one that goes on has that of its journal.
+    how
+        how this call relates to a run before it.
+    final_states
+        gives the state of each robot.
     at_end
         gives robots their last orders when the plan is done, before pictures are drawn.
     """
     from muster.running.carry_out import carried_out as carry_out
 
     report = None
+    resumed = how.before.plan if how.before is not None and how.resumes else None
+    plan = resumed or replace(plan or Plan(routes=()), ignored=options.request.ignore)
     try:
         kept = kept_record(options.record, options.html, options.plot, options.gantt)
-        with kept as file, shown_live(mission, options.foxglove, quiet=options.quiet) as viewers:
+        with (
+            kept as file,
+            shown_live(mission, options.foxglove, quiet=options.quiet) as viewers,
+            kept_journal(how, plan, options) as journal,
+        ):
             request = replace(
                 options.request,
                 accept_partial=True,  # or the verb has refused the plan
+                ignore=plan.ignored,
+                journal=journal,
                 record=file,
                 observers=(*observers, *viewers),
                 on_event=None if options.quiet else print_event,
@@ -259,6 +271,7 @@ def carried_out(
             )
             report = carry_out(mission, plan, fleet, request)
             at_end()
+            journal.end(final_states())
     except (OSError, MusterError) as error:
         if report is None:
             raise
@@ -297,50 +310,3 @@ def reported(
         (Ending.INTERRUPTED, halt.is_set()),
         (Ending.TASKS_LOST, lost or any(state.crashed for state in final_states)),
     )
-
-
-def show_final_states(states: Sequence[FinalState], *, asks: bool) -> None:
-    """Print a line for each robot; it concerns safety, so `--quiet` does not silence it.
-
-    Where the mission did not end as planned (`asks`), a line before them says what to do with robots that still move.
-    """
-    if asks and (moving := [state.robot for state in states if state.moving]):
-        todo = "land or stop them by their own controls or a ground station, and disarm them"
-        click.echo(f"still flying, driving or armed: {', '.join(moving)}; {todo}", err=True)
-    for state in states:
-        click.echo(str(state), err=True)
-
-
-class LastLines:
-    """Context manager that prints where robots are if an exception ends it: a refusal, an error, Ctrl-C, a signal.
-
-    Before robots were commanded, only those are printed that fly, drive or are armed all the same; afterwards all. The
-    exit code of the command is 4 if any does.
-
-    Attributes
-    ----------
-    begun : bool
-        Whether robots were commanded.
-    """
-
-    def __init__(self, final_states: Callable[[], Sequence[FinalState]], *, begun: bool = False) -> None:
-        self._final_states, self.begun = final_states, begun
-
-    def __enter__(self) -> LastLines:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
-        if kind is not None:
-            self.tell()
-
-    def tell(self) -> None:
-        """Print where robots are, and note for the exit code whether any moves."""
-        try:
-            states = self._final_states()
-        except MusterError as unknown:
-            click.echo(f"warning: where robots are is not known: {unknown}", err=True)
-            return
-        moving = [state for state in states if state.moving]
-        show_final_states(states if self.begun else moving, asks=True)
-        if moving:
-            note_ending(Ending.STILL_MOVING)

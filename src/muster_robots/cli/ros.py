@@ -21,9 +21,9 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.mission.reading.plan_reader import read_plan
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts
+from muster_robots.cli.going_on import going_on, recovered
+from muster_robots.cli.last_lines import LastLines
 from muster_robots.cli.real_robots import (
-    LastLines,
-    RealRunOptions,
     carried_out,
     from_here,
     read_given_plan,
@@ -34,6 +34,7 @@ from muster_robots.cli.real_robots import (
     start_in_time,
 )
 from muster_robots.cli.ros_targets import TargetOptions, target_options
+from muster_robots.cli.run_options import RealRunOptions
 from muster_robots.fleet_settings import Ros1Settings
 
 if TYPE_CHECKING:
@@ -74,11 +75,13 @@ def command(
     from muster_robots.ros1.node import become_node, leave
 
     if mission is None:
-        require_none_without_mission(plan=options.plan)
+        require_none_without_mission(plan=options.plan, resume=options.resume, recover=options.request.recover or None)
     _require_one_mission(options, stay)
     require_outputs(options, () if mission is None else mission.files)
     loaded = None if mission is None else mission.load(verbose=options.verbose)
     given = None if loaded is None else read_given_plan(options, loaded)
+    if loaded is not None:
+        going_on(options, loaded, _claims(options))  # refuses what does not go together, before nodes start
 
     settings = options.request.settings
 
@@ -87,7 +90,9 @@ def command(
         own = ("--planning", json.dumps(_as_data(options)), "--targets", "" if targets is None else targets.as_text())
         where = ("--namespace", settings.namespace, "--frame", settings.frame, "--poses", settings.poses)
         node = (sys.executable, "-m", "muster_robots.cli.ros_node", *where, *own)
-        work = _Work(given, stay, targets is not None, settings.frame if markers else None, options)
+        work = _Work(
+            given, stay, stay or loaded is None, targets is not None, settings.frame if markers else None, options
+        )
         return _with_nodes(loaded, work, node, begins=not on_start)
     finally:
         leave()
@@ -99,11 +104,21 @@ def _as_data(options: RealRunOptions) -> dict[str, Any]:
     return options.planning.as_dict() | {name: read_plan(file).as_dict() for name, file in plans.items()}
 
 
+def _claims(options: RealRunOptions) -> tuple[str, ...]:
+    """What tells the robots of a ROS master from those of others."""
+    from muster_robots.ros1.node import master_address
+
+    return (f"master {master_address(options.request.settings.master)}",)
+
+
 def _require_one_mission(options: RealRunOptions, stay: bool) -> None:
     """Refuse output files beside --stay: each holds the results of one mission."""
     for name in ("record", "html", "plot", "gantt"):
         if stay and getattr(options, name) is not None:
             raise ParameterError(f"--{name} given with --stay; expected one of them: a file holds one mission")
+    if stay and (options.resume is not None or options.request.recover):
+        asked = "--recover" if options.request.recover else "--resume"
+        raise ParameterError(f"{asked} given with --stay; expected one of them: it concerns one mission")
 
 
 @dataclass(frozen=True)
@@ -112,6 +127,7 @@ class _Work:
 
     plan: Plan | None
     stay: bool
+    loads: bool  # whether users load missions: what they start begins anew
     finds_targets: bool
     marked_in: str | None  # the frame of markers for RViz, where they are asked for
     options: RealRunOptions
@@ -166,7 +182,9 @@ def _one(controller: Controller, work: _Work, children: NodeProcesses) -> int:
     mission, code, reason = controller.await_start(), DONE, ""
     try:
         outcome = None if mission is None else _through(mission, controller, work, children)
-        if mission is not None and outcome is not None and not children.fault:
+        if isinstance(outcome, int):
+            code = outcome
+        elif mission is not None and outcome is not None and not children.fault:
             report, states = outcome
             code = reported(mission, report, work.options, controller.halt, _LEFT, states)
         elif not children.fault and controller.halt.is_set():
@@ -183,8 +201,11 @@ def _one(controller: Controller, work: _Work, children: NodeProcesses) -> int:
 
 def _through(
     mission: Mission, controller: Controller, work: _Work, children: NodeProcesses
-) -> tuple[Report, list[FinalState]] | None:
-    """Open the fleet, carry the mission out, and close the fleet; None if halted before the beginning."""
+) -> tuple[Report, list[FinalState]] | int | None:
+    """Open the fleet, carry the mission out, and close the fleet; None if halted before the beginning.
+
+    Where robots are brought home only, the exit code is returned.
+    """
     from muster_robots.ros1.fleet import Ros1Fleet
 
     fleet = Ros1Fleet(mission, work.options.request.settings)
@@ -200,23 +221,29 @@ def _through(
 
 def _carried_out(
     mission: Mission, controller: Controller, work: _Work, fleet: Ros1Fleet, children: NodeProcesses
-) -> tuple[Report, list[FinalState]] | None:
-    """Wait for robots, plan, and carry the plan out; None if halted before the beginning."""
+) -> tuple[Report, list[FinalState]] | int | None:
+    """Wait for robots, plan, and carry the plan out; see `_through`."""
     from muster.execution.final_state import final_states_by_telemetry
     from muster.running.live import wait_for_robots
     from muster.running.wall_time import planned_from
 
-    options = work.options
-    start = start_in_time(mission, fleet, options)
-    wait_for_robots(fleet, controller.halt, options.request.settings.wait_s)
+    options, there, plan = work.options, mission, work.plan
+    how = going_on(options, mission, _claims(options))
+    start = None if how.again else start_in_time(mission, fleet, options)
+    wait_for_robots(fleet, controller.halt, options.request.settings.wait_s, some=how.again)
     if controller.halt.is_set():
         return None
-    there = from_here(mission, fleet)
-    plan = work.plan or controller.plan(planned_from(there, start.seconds()), _as_data(options))
-    if plan is None or controller.halt.is_set():
-        return None
-    require_whole(plan, options)
+    if not work.loads:
+        how.require_nobody_left(final_states_by_telemetry(fleet, mission))
+    if start is not None:
+        there = from_here(mission, fleet)
+        plan = plan or controller.plan(planned_from(there, start.seconds()), _as_data(options))
+        if plan is None or controller.halt.is_set():
+            return None
+        require_whole(plan, options)
     controller.carry_out(fleet)
+    if how.recovers:
+        return recovered(how, fleet, options, controller.halt, lambda: None)
     observers: list[Recorder] = [controller.mission_topics]
     if work.marked_in is not None:
         from muster_robots.ros1.markers import Markers
@@ -224,8 +251,8 @@ def _carried_out(
         observers.append(Markers(there, work.marked_in))
 
     def states() -> list[FinalState]:
-        return [] if children.fault else final_states_by_telemetry(fleet, there)
+        return [] if children.fault else how.judged(final_states_by_telemetry(fleet, there))
 
     with LastLines(states, begun=True):
-        report = carried_out(there, plan, fleet, options, controller.halt, observers)
+        report = carried_out(there, plan, fleet, how, options, controller.halt, states, observers)
         return report, states()

@@ -8,14 +8,15 @@ import click
 
 from muster.cli.options.common import MissionFile, mission_argument
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts
+from muster_robots.cli.going_on import going_on
 from muster_robots.cli.real_robots import (
-    RealRunOptions,
     carried_out_from_here,
     read_given_plan,
     real_options,
     require_outputs,
 )
 from muster_robots.cli.ros_targets import TargetOptions, target_options
+from muster_robots.cli.run_options import RealRunOptions
 from muster_robots.fleet_settings import Ros2Settings
 
 
@@ -36,9 +37,9 @@ def command(mission: MissionFile, targets: TargetOptions | None, options: RealRu
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
-    given, settings = read_given_plan(options, loaded), options.request.settings
+    given, settings, how = read_given_plan(options, loaded), options.request.settings, going_on(options, loaded)
     with ctrl_c_halts(TO_END) as halt, robots_claimed(claims_of_request(options.request)):
         fleet = ros2_fleet(loaded, settings, targets=None if targets is None else targets.settings())
         with closing(fleet):
-            wait_for_robots(fleet, halt, settings.wait_s, NEEDED[settings.give])
-            return carried_out_from_here(loaded, fleet, given, options, halt)
+            wait_for_robots(fleet, halt, settings.wait_s, NEEDED[settings.give], some=how.again)
+            return carried_out_from_here(fleet, given, how, options, halt)

@@ -8,13 +8,14 @@ from muster.cli.options.common import MissionFile, mission_argument
 from muster.mission.records import key_of, required, specified
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster.running.fleet_registry import FLEETS
+from muster_robots.cli.going_on import going_on, left_robots_told
 from muster_robots.cli.real_robots import (
-    RealRunOptions,
     carried_out_from_here,
     read_given_plan,
     real_options,
     require_outputs,
 )
+from muster_robots.cli.run_options import RealRunOptions
 
 
 def _list(context: click.Context, _: click.Parameter, asked: bool) -> None:
@@ -61,12 +62,16 @@ def command(mission: MissionFile, options: RealRunOptions) -> int:
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
-    given = read_given_plan(options, loaded)
-    with ctrl_c_halts(TO_END) as halt, claimed_fleet(loaded, options.request, halt) as (fleet, at_end):
+    given, how = read_given_plan(options, loaded), going_on(options, loaded)
+    with (
+        ctrl_c_halts(TO_END) as halt,
+        left_robots_told(how),
+        claimed_fleet(loaded, options.request, halt, again=how.again) as (fleet, at_end),
+    ):
 
         def end() -> None:
             at_end()
             if (await_landing := getattr(fleet, "await_landing", None)) is not None:
                 await_landing(halt.is_set)
 
-        return carried_out_from_here(loaded, fleet, given, options, halt, end)
+        return carried_out_from_here(fleet, given, how, options, halt, end)

@@ -117,26 +117,40 @@ class MavlinkFleet:
         found = [fault for session in self.sessions.values() for fault in session.faults]
         return sorted(found, key=lambda fault: fault.at_s)
 
-    def connect(self, within_s: float = 10.0) -> None:
+    def connect(self, within_s: float = 10.0, *, again: bool = False) -> None:
         """Wait until every drone has sent a heartbeat and its position.
+
+        Parameters
+        ----------
+        within_s
+            how long is waited, seconds.
+        again
+            whether an earlier run has begun the mission: drones are anywhere then, those that it has left in the air
+            hover from now on, and those that are not heard are silent.
 
         Raises
         ------
         NetworkError
-            if one does not.
+            if one does not; where the mission is under way, if none does.
         ParameterError
             if one is none that Muster flies, or stands far from where the mission says, or is not alone on its line.
         """
         self._listen_until(self.time_s + within_s, lambda drone: drone.located)
         self._listen_until(self.time_s + _COMPARED_S, lambda drone: drone.autopilot is None)
+        heard = [name for name, session in self.sessions.items() if session.drone.located]
         for name, session in self.sessions.items():
+            if again and heard and name not in heard:
+                continue
             self._require_one(name, within_s)
             if not session.drone.located:
                 raise NetworkError(
                     f"{name}: no position within {within_s:g} s; expected a drone that knows where it is"
                 )
-            self._require_near(session.drone)
+            if not again:
+                self._require_near(session.drone)
         self._read_limits()
+        if again and self._settings.arm:
+            self._tell_all(Session.take_over)
         if self._speaker is not None:
             self._speaker.start()
 
@@ -156,6 +170,13 @@ class MavlinkFleet:
                     flown = session.drone.flown(doing.waypoints)
                     if why := session.refusal([waypoint.position for waypoint in flown]):
                         yield robot.id, task.id, f"{Kind.OUTSIDE_FENCE.words}: {why}"
+
+    def recover(self, at_end: AtEnd, halted: Callable[[], bool]) -> None:
+        """Let every drone that is Muster's return and land, or land where it is, and wait until drones are disarmed."""
+        self.end("return" if at_end == "hold" else at_end)
+        self.await_landing(halted)
+        if halted():
+            self.stop()
 
     def advance(self, until_s: float) -> Sequence[Event]:
         """Receive and send; reports each drone with a fault once (`robot_fails`). Raises what has ended the thread."""

@@ -69,6 +69,7 @@ class Session:
         self._refused = ""  # why it does not carry out its order
         self._suspended: Fault | None = None  # why it takes no part for now
         self._unheard: UnheardOrder | None = None
+        self.takes_over = False  # whether it is taken over when it is heard
         self._order = 0
         self._texts_before = 0  # status texts that had arrived when the last command was begun
         self._silent_since_s = float("-inf")  # time of the last position before a silence
@@ -169,6 +170,14 @@ class Session:
         if self.custody.is_heard and (self.fault is None or self._is_left_to_us):
             self._try(lambda: self._end_flight(now), now)
 
+    def take_over(self, now: float) -> None:
+        """Take over a drone that an earlier run has left armed in a mode of Muster's: it hovers, or stands down."""
+        drone = self.drone
+        self.takes_over = drone.autopilot is None  # not heard yet: at its first heartbeat
+        if not self.takes_over and drone.telemetry.armed and drone.telemetry.mode in drone.kind.own_modes:
+            drone.asked_to_arm = True
+            self.end("hold", now)
+
     @property
     def is_pending(self) -> bool:
         """Whether it was not told yet what it is to do at last, or has not shown that it does it."""
@@ -202,6 +211,8 @@ class Session:
             return
         self.drone.telemetry.note_heard(now)
         self.drone.telemetry.hear(message, now)
+        if self.takes_over and message.get_type() == "HEARTBEAT":
+            self.take_over(now)
         if message.get_type() == "STATUSTEXT":
             self._add_texts(now)
         self._try(lambda: self._answer(message, now), now)

@@ -68,9 +68,13 @@ class SimulatedRobot:
         while True:
             self._middleware.wait(1 / self._rate_hz)
             now = time.monotonic()
-            self._hear(now)
-            self._say(now, self._body.step(now, now - last))
+            self.step(now, now - last)
             last = now
+
+    def step(self, now: float, by_s: float) -> None:
+        """Take in what has come, move for so many seconds, and say where it is."""
+        self._hear(now)
+        self._say(now, self._body.step(now, by_s))
 
     def _hear(self, now: float) -> None:
         for goal in self._goals.take()[-1:]:

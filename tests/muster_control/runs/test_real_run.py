@@ -118,3 +118,43 @@ def test_drones_stand_when_the_server_is_killed_and_what_may_be_begun_once_is(tm
     assert resume.time_s - pause.time_s > 0.9  # the second that it lasted: the mission's clock is the wall clock
     apart_s = (resumed.at - log[resumed.seq - 2].at).total_seconds()
     assert resumed.time_s - log[resumed.seq - 2].time_s == pytest.approx(apart_s, abs=1.0)
+
+
+@pytest.mark.long
+def test_drones_that_a_cancelled_run_has_left_in_the_air_are_brought_home(tmp_path, sky):
+    database = f"sqlite:///{tmp_path / 'muster.db'}"
+    store = Store.open(database)
+    settings = {"endpoints": sky, "arm": True}
+    plan = planned(store, mission())
+    with serving(database, "--bridge", "mavlink") as server:
+
+        def carried_out(**more):
+            body = {"plan": plan, "world": "mavlink", "settings": {**settings, **more}}
+            return server.http.post("/runs", json=body).json()["id"]
+
+        def state(run):
+            return server.http.get(f"/runs/{run}").json()["state"]
+
+        def kinds(run):
+            return {entry["kind"] for entry in server.http.get(f"/runs/{run}/events").json()}
+
+        first = carried_out()
+        until(lambda: "ends" in kinds(first))
+        journals = list(tmp_path.glob("*.runs.lock-*.journal"))
+        assert len(journals) == 1
+        assert server.http.post(f"/runs/{first}/actions", json={"verb": "cancel"}).status_code == 202
+        until(lambda: state(first) == "cancelled")
+        until(lambda: not journals[0].exists())
+        home = carried_out(recover=True)
+        until(lambda: state(home) == "ended", 120.0)
+        server.end()
+    found, log = store.runs.get(home), store.log.entries(home)
+    store.close()
+    assert found.report["tasks_done"] == []
+    assert {one["reason"] for one in found.report["tasks_lost"]} == {"not to be done: robots were brought home"}
+    (states,) = (entry.data["robots"] for entry in log if entry.kind == "final_states")
+    assert [(one["moving"], one["words"].split(";")[0]) for one in states] == [
+        (False, f"r_{k}: returned, landed, not armed") for k in range(2)
+    ]
+    for endpoint in sky.values():
+        assert heard(endpoint, 0.2)[-1][2] == 0

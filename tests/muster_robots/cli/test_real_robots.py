@@ -11,15 +11,18 @@ from tests.running.test_live import WorldAsFleet, mission
 import muster
 from muster.cli.exits import INTERRUPTED, STILL_MOVING, TASKS_LOST
 from muster.cli.main import run
-from muster.execution.final_state import FinalState
+from muster.execution.final_state import FinalState, final_states_of
 from muster.execution.reports.report import ObjectiveReport, Report
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster.planning.options import PlanningOptions
+from muster.running.journal_file import journal_place
 from muster.running.live import wait_for_robots
 from muster.running.observed_run import ObservedRun
 from muster.running.run_request import OPEN_FLEET
 from muster_robots.cli import real_robots as real
-from muster_robots.cli.real_robots import RealRunOptions, carried_out, reported
+from muster_robots.cli.going_on import GoingOn
+from muster_robots.cli.real_robots import carried_out, reported
+from muster_robots.cli.run_options import RealRunOptions
 
 ASKED = {
     **dict.fromkeys(("plan", "record", "html", "plot", "gantt", "foxglove")),
@@ -35,7 +38,9 @@ ASKED = {
 def carry_out(options, **how):
     there = mission()
     halt = how.pop("halt", threading.Event())
-    report = carried_out(there, muster.solve(there, iterations=50), WorldAsFleet(there), options, halt, **how)
+    begins, fleet = GoingOn(there, journal_place("world", ["it"]), "world", ["it"], False, False), WorldAsFleet(there)
+    plan = muster.solve(there, iterations=50)
+    report = carried_out(there, plan, fleet, begins, options, halt, lambda: final_states_of(fleet, there), **how)
     return there, report, halt
 
 

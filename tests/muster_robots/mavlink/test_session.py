@@ -4,9 +4,11 @@ import math
 
 import pytest
 from tests.muster_robots.mavlink.talk import (
+    HOLD,
     M,
     Talk,
     ack,
+    commands,
     from_drone,
     heartbeat,
     mission_ack,
@@ -75,6 +77,15 @@ def test_a_late_acknowledgement_of_the_mission_before_ends_no_upload():
     talk.fly((10.0, 0.0, 8.0))
     assert talk.say(mission_ack()) == []
     assert talk.say(request(0))[0].get_type() == "MISSION_ITEM_INT"
+
+
+def test_a_drone_that_no_heartbeat_has_shown_flying_is_held_before_another_mission():
+    talk = Talk()
+    talk.arming((10.0, 0.0, 8.0))
+    current = talk.say(heartbeat(armed=True))[0].seq
+    talk.say(from_drone(M.MAVLink_mission_current_message(current)))
+    talk.say(from_drone(M.MAVLink_mission_item_reached_message(current)), position(above=8.0))
+    assert commands(talk.fly((20.0, 0.0, 8.0))) == [(HOLD, 1.0)]
 
 
 def test_items_reached_count_once_and_lost_ones_are_made_up_for():

@@ -76,7 +76,7 @@ def test_robots_stand_when_their_controller_ends_or_another_takes_its_place(ros)
     user.until(lambda status: status["state"] == "waiting", last="/muster/status")
     assert user.call("/command_interface/start")[0]
     until_it_drives(first)
-    second = ros.muster("far.yaml", *QUICK)
+    second = ros.muster("far.yaml", *QUICK, "--resume")
     _, err = first.communicate(timeout=20)
     assert first.returncode == 2
     assert err.splitlines()[-1].startswith("node /muster: it was shut down, or another took its name; ")
@@ -94,7 +94,7 @@ def test_robots_stand_when_their_controller_ends_or_another_takes_its_place(ros)
     assert not any((*told[-1]["linear"].values(), *told[-1]["angular"].values()))
 
     # the third is killed; robots stand when they have heard nothing for a while
-    third = ros.muster("far.yaml", *QUICK)
+    third = ros.muster("far.yaml", *QUICK, "--resume")
     until_it_drives(third)
     time.sleep(0.5)
     third.kill()

@@ -20,8 +20,8 @@ from contextlib import suppress
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
-from zlib import crc32
 
+from muster.mission.system.checked_lines import checked_line, text_of
 from muster_control.contract import Action, Entry, StoreError, Tick
 from muster_control.store.columns import as_json
 
@@ -195,14 +195,13 @@ def _line(item: Item) -> bytes:
     plain = asdict(item)
     if plain.get("at"):
         plain["at"] = plain["at"].isoformat()
-    text = as_json({kind: plain}).encode()
-    return b"%08x %s\n" % (crc32(text), text)
+    return checked_line(as_json({kind: plain}).encode())
 
 
 def _item(line: bytes) -> Item | None:
     """The item of a line; None if the line is damaged."""
-    checksum, _, text = line.partition(b" ")
-    if checksum != b"%08x" % crc32(text):
+    text = text_of(line)
+    if text is None:
         return None
     ((kind, plain),) = json.loads(text).items()
     if plain.get("at"):

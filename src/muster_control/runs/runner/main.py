@@ -1,9 +1,10 @@
 """The runner process of a run, `python -m muster_control.runs.runner.main MEMORY_MB`, connected to the server by pipes.
 
 The first line is the run: `run`, `mission` (`name`, `text`, `files` in base64), `plan`, `world`, `settings`, `speed`,
-`lock`, and of a run that goes on `checkpoint`, the entries of the `log` after it up to `seq`, `bodies`, `until_s`,
-`tracked_s`, `paused`, `cancelled`. The other lines are users' actions: `id`, `verb`, `data`, `who`. When the pipe ends
-the server is gone: the runner stops real robots and ends. The memory limit is for simulated worlds only.
+`lock`, `journal`, `at`, and of a run that goes on `checkpoint`, the entries of the `log` after it up to `seq`,
+`bodies`, `until_s`, `tracked_s`, `paused`, `cancelled`. The other lines are users' actions: `id`, `verb`, `data`,
+`who`. When the pipe ends the server is gone: the runner stops real robots and ends. The memory limit is for simulated
+worlds only.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from muster.running.worlds import WORLDS
 from muster.state import MissionState
 from muster.state.recovery import recovered_from
 from muster_control.runs.log.checkpoints import unpacked_state
+from muster_control.runs.runner.local_journal import LocalJournal
 from muster_control.runs.runner.lock import alone
 from muster_control.runs.runner.log_recorder import LogRecorder
 from muster_control.runs.runner.pipe import Inbox, Outbox
@@ -74,7 +76,9 @@ def _obey(folder: str, memory_mb: int) -> int:
     try:
         _carry_out(begin, folder, inbox, outbox, ended)
     except MusterError as error:
-        outbox.send({"type": "failed", "reason": str(error).splitlines()[0]})
+        left = "; ".join(str(one) for one in getattr(error, "states", ()) if one.moving)
+        told = f"; still flying, driving or armed: {left}; expected a run with recover" if left else ""
+        outbox.send({"type": "failed", "reason": f"{str(error).splitlines()[0]}{told}"})
     except (MemoryError, OSError) as error:
         if real.is_set() or not is_of_memory(error):
             raise
@@ -103,17 +107,23 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
         outbox.send({"type": "mission", "mission": _shown(mission)})
         outbox.send({"type": "resuming", "share": 0.4})
         plan = plan_from(begin["plan"], "the plan")
+        local = None
+        if real:
+            local = stack.enter_context(closing(LocalJournal(outbox, begin, mission, plan)))
+            begin = local.begin
+            local.send_again()
+        out = local or outbox
         state = _known(begin, mission, plan)
         recorder = LogRecorder(
             mission,
-            outbox,
+            out,
             state,
             seq=begin["seq"],
             tracked_s=begin["tracked_s"],
             stretch_s=REAL_STRETCH_S if real else STRETCH_S,
         )
         outbox.send({"type": "resuming", "share": 0.6})
-        with closing(_world_run(begin, mission, plan, recorder, ended)) as world_run:
+        with closing(_world_run(begin, mission, plan, recorder, ended, local)) as world_run:
             if real:
                 outbox.send({"type": "mission", "mission": _shown(replace(mission, starts_at=world_run.starts_at))})
             how = {key: begin[key] for key in ("speed", "paused", "cancelled")}
@@ -122,10 +132,11 @@ def _carry_out(begin: Mapping[str, Any], folder: str, inbox: Inbox, outbox: Outb
                 world_run,
                 recorder,
                 inbox,
-                outbox,
+                out,
                 starts_at=world_run.starts_at,
                 ended=ended.is_set,
                 checkpoint=begin["seq"] - len(begin["log"]),
+                obeyed=() if local is None else local.obeyed,
                 **how,
             ).run()
 
@@ -142,7 +153,12 @@ def _claims_here(world: str, settings: Mapping[str, Any]) -> frozenset[str]:
 
 
 def _world_run(
-    begin: Mapping[str, Any], mission: Mission, plan: Plan, recorder: LogRecorder, ended: threading.Event
+    begin: Mapping[str, Any],
+    mission: Mission,
+    plan: Plan,
+    recorder: LogRecorder,
+    ended: threading.Event,
+    local: LocalJournal | None = None,
 ) -> SimulatedRun | RealRun:
     """The run in its world: from its beginning, or by what the recorder's state knows of it."""
     from muster_control.runs.run_settings import request_of
@@ -154,11 +170,15 @@ def _world_run(
         begun = None if state is None else Begun.of(state, begin["bodies"], begin["until_s"], begin["world"])
         return SimulatedRun(mission, plan, request, recorder=recorder, begun=begun)
     from muster.running.fleet_registry import fleet_ready
-    from muster_control.runs.runner.real_run import RealRun
+    from muster_control.runs.runner.real_run import RealRun, RecoveryRun
 
-    fleet, at_end = fleet_ready(request.world, mission, request.settings, ended, again=state is not None)
+    again = state is not None or request.recover
+    fleet, at_end = fleet_ready(request.world, mission, request.settings, ended, again=again)
+    made = RecoveryRun if request.recover else RealRun
     try:
-        return RealRun(mission, plan, fleet, recorder, request=request, state=state, at_end=at_end)
+        before_order = None if local is None else local.before_order
+        how: dict[str, Any] = {"request": request, "state": state, "at_end": at_end, "before_order": before_order}
+        return made(mission, plan, fleet, recorder, **how)
     except BaseException:
         fleet.close()
         raise

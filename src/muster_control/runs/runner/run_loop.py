@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from muster.execution import RobotStatus, Status
@@ -18,6 +18,7 @@ from muster_control.runs.runner.pipe import Inbox, Outbox
 from muster_control.runs.runner.user_events import event_given
 
 if TYPE_CHECKING:
+    from muster_control.runs.runner.local_journal import LocalJournal
     from muster_control.runs.runner.real_run import RealRun
     from muster_control.runs.runner.simulated_run import SimulatedRun
 
@@ -48,6 +49,8 @@ class RunLoop:
         whether users had paused or cancelled the run when it was interrupted.
     checkpoint
         the entry of the last checkpoint, 0 for none.
+    obeyed
+        the actions that were executed before, by a log that the server did not have.
     """
 
     def __init__(
@@ -55,7 +58,7 @@ class RunLoop:
         world_run: SimulatedRun | RealRun,
         recorder: LogRecorder,
         inbox: Inbox,
-        outbox: Outbox,
+        outbox: Outbox | LocalJournal,
         *,
         speed: float | None,
         starts_at: str | None,
@@ -63,6 +66,7 @@ class RunLoop:
         paused: bool = False,
         cancelled: bool = False,
         checkpoint: int = 0,
+        obeyed: Collection[int] = (),
         clock: Clock | None = None,
     ) -> None:
         self._world_run, self._recorder, self._inbox, self._outbox = world_run, recorder, inbox, outbox
@@ -72,7 +76,7 @@ class RunLoop:
         self._paused, self._cancelled, self._must_replan = paused, cancelled, False
         self._schedule, self._kept = Schedule(self._clock, checkpoint), (-1, -1.0)
         self._steps_until = -1e9
-        self._obeyed: set[int] = set()
+        self._obeyed = set(obeyed)
         self._told: Mapping[str, Any] | None = None
         self._states_at = self._status_at = -1e9
 
