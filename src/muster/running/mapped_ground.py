@@ -34,6 +34,11 @@ if TYPE_CHECKING:
 class MappingFleet(Protocol):
     """A fleet whose robots tell the maps that they build."""
 
+    @property
+    def ports(self) -> Mapping[str, RobotPort]:
+        """See `Fleet`."""
+        ...
+
     def hear_maps(self) -> None:
         """Listen to the maps of all robots from now on; robots without one are not ready then."""
         ...
