@@ -50,4 +50,4 @@ PARTS = {
     "every order of arrival": Bounds(quanta=0, any_order=True),
     "two crashes and two orders": Bounds(quanta=3, crashes=2, orders=2),
 }
-"""What is explored. Every part is small enough to be exhausted, the last one within an hour or two of a quiet core."""
+"""What is explored. Every part is small enough to be exhausted, the last one within five minutes of a core."""
