@@ -1,12 +1,14 @@
 """A robot in a process of its own, by cyclonedds alone: goes straight to its goal, and publishes its pose.
 
 Its types are written out here, so that they are not those of the bridge: `python robot_process.py NAME X Y SAYS`.
+At SIGUSR1 somebody pushes it by `PUSHED_M`: it goes on from there.
 """
 
 # ruff: noqa: N801 - names of DDS
 
 import math
 import os
+import signal
 import sys
 import time
 from dataclasses import dataclass
@@ -92,6 +94,9 @@ class Odometry_(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
     twist: TwistWithCovariance_
 
 
+PUSHED_M = -1.5, 2.0
+
+
 def main(name, x, y, says):
     quality = Qos(Policy.DataRepresentation(use_cdrv0_representation=True), Policy.Reliability.Reliable(10**8))
     participant = DomainParticipant(int(os.environ["ROS_DOMAIN_ID"]))
@@ -100,10 +105,14 @@ def main(name, x, y, says):
     told = DataWriter(participant, Topic(participant, f"rt/{name}/{says}", kind), qos=quality)
     place, goal, speed, dt = [float(x), float(y)], None, 4.0, 0.02
     still, nothing = Vector3_(0.0, 0.0, 0.0), [0.0] * 36
+    pushes = []
+    signal.signal(signal.SIGUSR1, lambda *_: pushes.append(PUSHED_M))
     while True:
         for sample in goals.take(10):
             assert sample.header.frame_id == "map"
             goal = (sample.pose.position.x, sample.pose.position.y)
+        while pushes:
+            place = [c + by for c, by in zip(place, pushes.pop(), strict=True)]
         moved = 0.0
         if goal is not None:
             rest = math.dist(place, goal)

@@ -1,5 +1,6 @@
 """Robots of ROS 2 over DDS: robots in other processes, with types of their own, on this computer alone."""
 
+import signal
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -9,9 +10,9 @@ from tests.times_and_teams import judge, tasks_of
 
 import muster
 from muster.mission.errors import MissingExtraError, NetworkError, ParameterError
-from muster.mission.model import Mission, Robot, Task
+from muster.mission.model import Event, Mission, Robot, Task
 from muster.motion.port import Waypoint
-from muster.running.live import carry_out_live
+from muster.running.live import Live, carry_out_live
 
 pytest.importorskip("cyclonedds")
 
@@ -96,6 +97,37 @@ def test_a_plan_is_carried_out_by_robots_in_other_processes(robots):
     report = carry_out_live(there, muster.solve(there, "greedy"), fleet)
     assert set(report.tasks_done) == {"t_0", "t_1", "t_2"}
     fleet.close()
+
+
+def test_a_robot_that_is_pushed_goes_on_and_one_that_an_operator_takes_away_stands_until_it_returns(robots):
+    there = mission("r_0", "r_1")
+    there = replace(there, tasks=tuple(replace(task, duration_s=1.0) for task in there.tasks))
+    processes = [robots("r_0", 0, 0, "pose"), robots("r_1", 0, 3, "odom")]
+    fleet = Ros2Fleet(there, middleware=DdsMiddleware())
+    until(fleet, lambda: all(port.telemetry() is not None for port in fleet.ports.values()))
+    run = Live(there, muster.solve(there, "greedy"), fleet)
+    pushed = removed = returned = None
+    while not run.done:
+        run.look()
+        run.hear(run.time_s + 0.1)
+        run.executor.come_to(run.time_s)
+        place = run.executor.crew["r_0"].position
+        if pushed is None and place[0] > 0.2:
+            processes[0].send_signal(signal.SIGUSR1)
+            pushed = run.time_s
+        if removed is None and run.time_s > 0.5:
+            run.executor.report(Event(at_s=0, robot_removed="r_1"))
+            removed = run.time_s
+        if removed and not returned and run.time_s > removed + 2.0:
+            assert run.executor.crew["r_1"].telemetry.velocity == (0.0, 0.0, 0.0)
+            run.executor.report(Event(at_s=0, robot_returns="r_1"))
+            returned = run.time_s
+        assert run.time_s < 120
+    run.stop()
+    fleet.close()
+    assert min(pushed, returned) > 0
+    assert run.result().tasks_lost == ()
+    assert not [event for event in run.events if event.kind in ("robot_stuck", "robot_silent")]
 
 
 @pytest.mark.long
