@@ -46,5 +46,5 @@ HTTP = FleetType(
     open=open_http,
     abilities=("ground", "holds", "returns", "resumes", "battery"),
     settings=HttpSettings,
-    claims=lambda settings: [f"robots of {settings.url}"],
+    claims=lambda settings: [f"the server {settings.url}"],
 )
