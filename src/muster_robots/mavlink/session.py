@@ -179,6 +179,13 @@ class Session:
         fits = self.custody.does_what_is_wanted(seen) and not drone.stands
         return not self.custody.is_heard or (self._is_left_to_us and not fits)
 
+    @property
+    def ends_its_flight(self) -> bool:
+        """Whether it returns or lands, or is to and obeys nobody else."""
+        drone = self.drone
+        is_to = self.custody.wanted in (Wants.RETURN, Wants.LAND) and drone.ours
+        return is_to or drone.telemetry.mode in (drone.kind.back, drone.kind.land)
+
     def note_missing_hold(self, now: float) -> None:
         """Add to its faults that it did not get the command to hover: it may fly on."""
         if not self.is_pending or not self._is_left_to_us:
@@ -242,8 +249,13 @@ class Session:
             self.fault = fault
         self._break_off()
         if kind.reaction is not Reaction.NOTHING:
-            self.custody.want(Wants.RETURN if kind.reaction is Reaction.RETURN else Wants.HOLD)
+            self.custody.want(Wants.RETURN if kind.reaction is Reaction.RETURN else self._wanted_after)
             self._end_flight(now)
+
+    @property
+    def _wanted_after(self) -> Wants:
+        """What it is to do after a fault: what the end of the mission asks, if that was said, else to hold."""
+        return self.custody.wanted if self.custody.wanted in (Wants.RETURN, Wants.LAND) else Wants.HOLD
 
     def _break_off(self) -> None:
         self.drone.forget_order()
@@ -306,7 +318,7 @@ class Session:
         self.faults.append(fault)
         self._suspended = fault
         self._break_off()
-        self.custody.want(Wants.HOLD)
+        self.custody.want(self._wanted_after)
 
     def _take_order(self) -> None:
         if self.custody.standing is Standing.SILENT and self.drone.route is not None:
