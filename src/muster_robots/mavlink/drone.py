@@ -26,6 +26,15 @@ _HOME_M = 3.0
 
 
 @dataclass
+class UnheardOrder:
+    """An order that was replaced while the drone was not heard, and that it may fly all the same."""
+
+    number: int
+    route: Route
+    passed: int
+
+
+@dataclass
 class Drone:
     """Working state of one drone.
 
@@ -82,6 +91,11 @@ class Drone:
     def ours(self) -> bool:
         """Whether it flies, in a mode into which Muster brought it."""
         return self.asked_to_arm and self.telemetry.armed and self.telemetry.mode in self.kind.own_modes
+
+    @property
+    def is_left_to_us(self) -> bool:
+        """Whether nobody flies it but Muster: no pilot, and no failsafe of its autopilot."""
+        return self.ours or (self.stands and (not self.telemetry.armed or self.telemetry.mode in self.kind.own_modes))
 
     @property
     def has_passed_all(self) -> bool:

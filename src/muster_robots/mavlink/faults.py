@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 TEXTS_BEFORE_S, _TEXTS_AFTER_S = 5.0, 0.5
@@ -98,6 +98,11 @@ class Fault:
     def awaits_texts(self, now: float) -> bool:
         """Whether a status text that arrives now may give the cause."""
         return now <= self.at_s + _TEXTS_AFTER_S
+
+    def with_text(self, new: StatusText) -> Fault:
+        """Return the fault with one more text; a text that has grown by a piece takes the place of what it was."""
+        known = (text for text in self.texts if text.at_s != new.at_s or not new.text.startswith(text.text))
+        return replace(self, texts=(*known, new))
 
     @property
     def reason(self) -> str:

@@ -248,15 +248,15 @@ class MavlinkFleet:
         return Failure(at_s=max(0.0, fault.at_s), robot_fails=fault.robot, reason=fault.reason)
 
     def _ending_flights(self) -> list[Drone]:
-        """The drones that return or land and have sent a heartbeat lately."""
-        drones = [session.drone for session in self.sessions.values() if session.drone.autopilot is not None]
-        return [
-            drone
-            for drone in drones
-            if drone.telemetry.armed
-            and drone.telemetry.mode in (drone.kind.back, drone.kind.land)
-            and self.time_s < drone.telemetry.heard_s + _STANDSTILL_S
+        """The drones that return or land, or are to, and were heard lately."""
+        heard = [
+            session
+            for session in self.sessions.values()
+            if session.drone.autopilot is not None
+            and session.drone.telemetry.armed
+            and self.time_s < session.drone.telemetry.heard_s + _STANDSTILL_S
         ]
+        return [session.drone for session in heard if session.ends_its_flight]
 
     def _tell_all(self, what: Callable[[Session, float], object]) -> None:
         with self._lock:

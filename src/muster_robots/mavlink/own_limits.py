@@ -54,6 +54,12 @@ def limits_of(autopilot: Autopilot, values: Mapping[str, float]) -> tuple[Limit,
     return tuple(limit for limit in found if limit.most_m > 0)
 
 
+def refusal_of(autopilot: Autopilot | None, values: Mapping[str, float], home: Place, places: Sequence[Place]) -> str:
+    """Return why places, in the order of flight, are outside the limits of an autopilot; empty if they are not."""
+    limits = () if autopilot is None else limits_of(autopilot, values)
+    return next((why for limit in limits if (why := limit.refusal(home, places))), "")
+
+
 def read_parameters(target: Message, autopilot: Autopilot, into: dict[str, float]) -> Script:
     """PARAM_REQUEST_READ of each, until all have been answered, or asked for twice: some versions lack some."""
     names = _ARDUPILOT if autopilot is ARDUPILOT else _PX4

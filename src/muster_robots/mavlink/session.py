@@ -6,7 +6,6 @@ Without `settings.arm` a session says nothing but heartbeats and requests for te
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
 
 from muster.mission.errors import ParameterError
 from muster.motion.port import Place, Telemetry, Waypoint
@@ -14,11 +13,10 @@ from muster_robots.custody import Custody, Holder, Standing, Wants
 from muster_robots.mavlink.autopilots import AtEnd, autopilot_of
 from muster_robots.mavlink.commands import guided, into, mission, stand_down
 from muster_robots.mavlink.dialect import Message, mavlink
-from muster_robots.mavlink.drone import Drone
+from muster_robots.mavlink.drone import Drone, UnheardOrder
 from muster_robots.mavlink.fault_detection import FaultDetector
 from muster_robots.mavlink.faults import TEXTS_BEFORE_S, Costs, Fault, FaultError, Kind, Reaction, StatusText
-from muster_robots.mavlink.mission_items import Route
-from muster_robots.mavlink.own_limits import limits_of, read_parameters
+from muster_robots.mavlink.own_limits import read_parameters, refusal_of
 from muster_robots.mavlink.position_targets import EVERY_S, position_target
 from muster_robots.mavlink.procedures import command
 from muster_robots.mavlink.requests import RequestSequence, Script
@@ -39,15 +37,6 @@ _AT_END: dict[Wants, AtEnd] = {wants: at_end for at_end, wants in _WANTED.items(
 _KIND_OF = {Standing.PILOT: Kind.PILOT, Standing.FAILSAFE: Kind.FAILSAFE, Standing.STATION: Kind.STATION}
 """Faults of a drone that somebody else has."""
 _REQUESTS = (mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_CMD_REQUEST_MESSAGE)
-
-
-@dataclass
-class UnheardOrder:
-    """An order that was replaced while the drone was not heard, and that it may fly all the same."""
-
-    number: int
-    route: Route
-    passed: int
 
 
 class Session:
@@ -143,12 +132,8 @@ class Session:
 
     def refusal(self, places: Sequence[Place]) -> str:
         """Why places, in the order of flight, are outside the limits of its autopilot; empty if they are not."""
-        drone = self.drone
-        if drone.autopilot is None:
-            return ""
-        limits = limits_of(drone.kind, drone.parameters)
-        home = drone.home or drone.telemetry.start
-        return next((why for limit in limits if (why := limit.refusal(home, places))), "")
+        home = self.drone.home or self.drone.telemetry.start
+        return refusal_of(self.drone.autopilot, self.drone.parameters, home, places)
 
     def hold(self, now: float) -> int:
         """Let it stay where it is, if it flies, and is ours; on the ground it is not left armed."""
@@ -167,7 +152,7 @@ class Session:
             return
         self.custody.want(_WANTED[at_end])
         self._requests = None
-        if self.custody.is_heard and (self.fault is None or self._is_left_to_us):
+        if self.custody.is_heard and (self.fault is None or self.drone.is_left_to_us):
             self._try(lambda: self._end_flight(now), now)
 
     def take_over(self, now: float) -> None:
@@ -186,11 +171,18 @@ class Session:
             return False
         seen = drone.seen(busy=self.busy)
         fits = self.custody.does_what_is_wanted(seen) and not drone.stands
-        return not self.custody.is_heard or (self._is_left_to_us and not fits)
+        return not self.custody.is_heard or (self.drone.is_left_to_us and not fits)
+
+    @property
+    def ends_its_flight(self) -> bool:
+        """Whether it returns or lands, or is to and obeys nobody else."""
+        drone = self.drone
+        is_to = self.custody.wanted in (Wants.RETURN, Wants.LAND) and drone.ours
+        return is_to or drone.telemetry.mode in (drone.kind.back, drone.kind.land)
 
     def note_missing_hold(self, now: float) -> None:
         """Add to its faults that it did not get the command to hover: it may fly on."""
-        if not self.is_pending or not self._is_left_to_us:
+        if not self.is_pending or not self.drone.is_left_to_us:
             return
         silent_s = now - self.drone.telemetry.heard_s
         detail = f"nothing heard for {silent_s:.1f} s; not told to hover"
@@ -253,8 +245,13 @@ class Session:
             self.fault = fault
         self._break_off()
         if kind.reaction is not Reaction.NOTHING:
-            self.custody.want(Wants.RETURN if kind.reaction is Reaction.RETURN else Wants.HOLD)
+            self.custody.want(Wants.RETURN if kind.reaction is Reaction.RETURN else self._wanted_after)
             self._end_flight(now)
+
+    @property
+    def _wanted_after(self) -> Wants:
+        """What it is to do after a fault: what the end of the mission asks, if that was said, else to hold."""
+        return self.custody.wanted if self.custody.wanted in (Wants.RETURN, Wants.LAND) else Wants.HOLD
 
     def _break_off(self) -> None:
         self.drone.forget_order()
@@ -271,9 +268,7 @@ class Session:
         if not self.faults or not self.faults[-1].awaits_texts(now):
             return
         before, new = self.faults[-1], self.drone.telemetry.texts[-1]
-        pieces = [text for text in before.texts if text.at_s == new.at_s and new.text.startswith(text.text)]
-        known = tuple(text for text in before.texts if text not in pieces)
-        after = self.faults[-1] = replace(before, texts=(*known, new))
+        after = self.faults[-1] = before.with_text(new)
         self.fault = after if self.fault is before else self.fault
         self._suspended = after if self._suspended is before else self._suspended
         self._refused = after.reason if self._refused == before.reason else self._refused
@@ -317,7 +312,7 @@ class Session:
         self.faults.append(fault)
         self._suspended = fault
         self._break_off()
-        self.custody.want(Wants.HOLD)
+        self.custody.want(self._wanted_after)
 
     def _take_order(self) -> None:
         if self.custody.standing is Standing.SILENT and self.drone.route is not None:
@@ -353,14 +348,6 @@ class Session:
             self._begin(stand_down(self.drone), now)
         elif self.drone.ours and self.custody.wanted in _AT_END:
             self._begin(into(self.drone, self.drone.kind.final_mode(_AT_END[self.custody.wanted])), now)
-
-    @property
-    def _is_left_to_us(self) -> bool:
-        """Whether nobody flies it but Muster: no pilot, and no failsafe of its autopilot."""
-        drone = self.drone
-        return drone.ours or (
-            drone.stands and (not drone.telemetry.armed or drone.telemetry.mode in drone.kind.own_modes)
-        )
 
     def _begin(self, script: Script, now: float) -> None:
         self._texts_before = self.drone.telemetry.texts_heard

@@ -65,7 +65,9 @@ def rows():
     """Of the table, by the words of the first cell."""
     text = PAGE.read_text().split("## Faults and reactions")[1].split("\n## ")[0]
     cells = [
-        [cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in text.splitlines()
+        if line.startswith("|") and line.count("|") == 7
     ]
     return {row[0]: dict(zip(cells[0], row, strict=True)) for row in cells[2:]}
 

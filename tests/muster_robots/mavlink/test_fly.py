@@ -314,6 +314,16 @@ def test_a_drone_that_fails_is_named_with_its_reason_and_its_task_is_lost(missio
     assert "near" in said.out
 
 
+def test_a_drone_whose_motors_stop_has_crashed_and_loses_its_task(mission, port, sky, capsys):
+    mission.write_text(MISSION.replace("[10, 0, 5]", "[400, 0, 30]"))
+    drone = sky(Faults(disarm_at_s=6.0))
+    assert fly(mission, port, "--arm", "--at-end", "return") == TASKS_LOST
+    said = capsys.readouterr().err
+    assert re.search(r"^r_0: crashed: its motors stopped \d+\.\d m above its start; not armed; at", said, re.MULTILINE)
+    assert "Disarmed by external command" in said
+    assert not drone.armed
+
+
 def test_nobody_there(mission, port, capsys):
     assert fly(mission, port, "--wait", "0.2") == 2
     assert capsys.readouterr().err.strip() == "r_0: no heartbeat within 0.2 s; expected a drone at its endpoint"
