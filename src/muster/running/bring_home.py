@@ -28,21 +28,19 @@ RECOVERED = "not to be done: robots were brought home"
 """Why no task was done."""
 _UP_M = 0.5
 """A robot in the air goes over its start before it comes down, if it is this much higher than that."""
-_FREE = {
-    "type": None,
-    "work_capacity": None,
-    "load_capacity": None,
-    "load_at_start": None,
-    "battery": None,
-    "return_to_start": False,
-    "end_position": None,
-    "available_from_s": 0.0,
-    "available_until_s": None,
-    "shifts_s": (),
-    "min_tasks": 0,
-    "longest_duty_s": None,
-}
-"""Fields of a robot that keep it from no way home."""
+_BODY = (
+    "id",
+    "heading_deg",
+    "speed_mps",
+    "radius_m",
+    "kind",
+    "kinematics",
+    "yaw_rate_radps",
+    "acceleration_mps2",
+    "climb_mps",
+    "avoidance_priority",
+)
+"""Fields of a robot that say how it moves: no rule of the mission keeps it from its way home."""
 
 
 def bring_home(
@@ -131,7 +129,7 @@ def homeward(mission: Mission, starts: Mapping[str, Robot], said: Mapping[str, T
     """
     d = mission.dimensions
     robots = [
-        replace(start, **{**_FREE, "position": said[name].position[:d]})  # type: ignore[arg-type]
+        Robot(**{field: getattr(start, field) for field in _BODY}, position=said[name].position[:d])
         for name, start in starts.items()
     ]
     tasks = [task for name, start in starts.items() for task in _way_home(start, said[name].position[:d], d)]

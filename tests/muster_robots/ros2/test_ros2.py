@@ -93,6 +93,41 @@ def test_robots_of_a_namespace_carry_a_mission_out_one_joins_and_one_that_dies_i
 
 
 @pytest.mark.long
+def test_a_mission_that_was_killed_goes_on_and_robots_are_brought_home(simulated, start, mission):
+    simulated("r_0", 0, 0)
+    simulated("r_1", 0, 3)
+    killed = start("-m", "muster.cli", "ros2", mission, *QUICK)
+    done = []
+    for line in killed.stderr:
+        done += [line.split()[-1]] if "has done task" in line else []
+        if len(done) == 2:
+            break
+    killed.kill()
+    killed.communicate(timeout=20)
+
+    refused = start("-m", "muster.cli", "ros2", mission, *QUICK)
+    _, err = refused.communicate(timeout=40)
+    assert refused.returncode in (2, 4), err  # they may still drive to their last goals
+    assert "did not end (2 tasks done), and has left r_0: " in err
+
+    resumed = start("-m", "muster.cli", "ros2", mission, *QUICK, "--resume")
+    out, err = resumed.communicate(timeout=60)
+    assert resumed.returncode == 0, err
+    assert set(json.loads(out)["tasks_done"]) == TASKS
+    assert not any(f"sets out for task {task}\n" in err for task in done)
+
+    home = start("-m", "muster.cli", "ros2", mission, *QUICK, "--recover")
+    out, err = home.communicate(timeout=60)
+    assert home.returncode == 0, err
+    assert json.loads(out)["not_home"] == {}
+    listens = DdsMiddleware()
+    places = {name: newest(listens, listens.reader(f"/{name}/odom", Odometry)) for name in ("r_0", "r_1")}
+    listens.close()
+    assert (places["r_0"].x, places["r_0"].y) == pytest.approx((0.0, 0.0), abs=0.5)
+    assert (places["r_1"].x, places["r_1"].y) == pytest.approx((0.0, 3.0), abs=0.5)
+
+
+@pytest.mark.long
 def test_ctrl_c_lets_robots_stay_where_they_are(simulated, start, mission):
     simulated("r_0", 0, 0)
     simulated("r_1", 0, 3)
