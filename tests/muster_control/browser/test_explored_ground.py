@@ -7,16 +7,20 @@ from muster_control.client import Client
 pytestmark = pytest.mark.xdist_group("explored")
 
 MISSION = "market-rescue-arena"
-SHARE = """() => {
-  const canvas = [...document.querySelectorAll('canvas')].sort((a, b) => b.width * b.height - a.width * a.height)[0];
-  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+SHARE = """() => Math.max(...[...document.querySelectorAll("canvas")].map((canvas) => {
+  const { width, height } = canvas;
+  const pixels = width && height && canvas.getContext("2d")?.getImageData(0, 0, width, height);
   let dark = 0;
-  for (let k = 0; k < data.length; k += 4) dark += data[k + 3] > 180 && data[k] + data[k + 1] + data[k + 2] < 200;
-  return dark / (canvas.width * canvas.height);
-}"""
+  for (let k = 0; pixels && k < pixels.data.length; k += 4) {
+    const [red, green, blue, opacity] = pixels.data.slice(k, k + 4);
+    dark += opacity > 180 && red + green + blue < 200;
+  }
+  return pixels ? dark / (width * height) : 0;
+}))"""
 """Of the map that is nearly black: obstacles that were seen, and little else."""
 
 
+@pytest.mark.long
 def test_obstacles_appear_as_robots_see_them(watched, served):
     with Client(served) as client:
         plan = client.plan(MISSION, iterations=20).wait()
