@@ -254,7 +254,7 @@ class RunRequest(Settings):
         if values["explore"] and not values["unknown"]:
             yield Fault(("explore",), shown(True), "it together with unknown")
         if values["unknown"] and values["traffic"] == RESERVE:
-            yield Fault(("traffic",), RESERVE, "free: ways are not known beforehand")
+            yield Fault(("traffic",), RESERVE, "free: ways are not known beforehand; or a map that was saved")
         if values["unknown"] and values["law"] == TRAJECTORY:
             yield Fault(("law",), TRAJECTORY, "profile or thesis: trajectories are rounded by the map")
         if values["traffic"] == RESERVE and values["world"] in FLEETS and (why := FLEETS[values["world"]].lacks(HOLDS)):
