@@ -9,6 +9,7 @@ from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace
 from muster.motion.grid import Grid
 from muster.motion.maps.distances import inflated
 from muster.motion.maps.polygons import free_region
+from muster.motion.paths import PathFinder
 from muster.traffic.roadmaps.edge_conflicts import conflicts
 from muster.traffic.roadmaps.exact_ways import Network
 from muster.traffic.roadmaps.lane_network import network
@@ -24,6 +25,15 @@ def groups(roadmap):
     n = len(roadmap.points)
     links = coo_array((np.ones(len(roadmap.edges)), roadmap.edges.T), shape=(n, n))
     return connected_components(links, directed=False)[1]
+
+
+def to_goal(roadmap, goal):
+    """Metres along edges from each point to a goal."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import dijkstra
+
+    n = len(roadmap.points)
+    return dijkstra(coo_array((roadmap.lengths_m, roadmap.edges.T[::-1]), shape=(n, n)).tocsr(), indices=int(goal))
 
 
 def noisy_grid(seed):
@@ -107,6 +117,24 @@ def test_a_gap_narrower_than_a_cell_is_passed():
     roadmap = Roadmap.of(space, RADIUS, [(1, 1), (9, 3)])
     one, other = groups(roadmap)[roadmap.places]
     assert one == other
+
+
+@pytest.mark.parametrize("wide_m", [0.66, 0.7, 0.76])
+def test_ways_round_blocks_are_as_short_as_they_are_in_passages_that_hardly_fit(wide_m):
+    side_m, count = 2.1, 3
+    pitch_m = side_m + wide_m
+    extent_m = count * pitch_m + wide_m
+    corners_m = [wide_m + k * pitch_m for k in range(count)]
+    blocks = [shapely.box(x, y, x + side_m, y + side_m) for x in corners_m for y in corners_m]
+    region = shapely.box(0, 0, extent_m, extent_m).difference(shapely.union_all(blocks)).buffer(-RADIUS)
+    turn = np.array([[np.cos(0.2), np.sin(0.2)], [-np.sin(0.2), np.cos(0.2)]])
+    space = PolygonSpace(shapely.transform(region, lambda points: points @ turn))
+    middles_m = [wide_m / 2 + k * pitch_m for k in range(count + 1)]
+    places = np.array([(x, y + 0.3 * pitch_m) for x in middles_m for y in middles_m[:-1]]) @ turn
+    roadmap, finder = Roadmap.of(space, RADIUS, places), PathFinder(space)
+    one_m = to_goal(roadmap, roadmap.places[5])
+    for place, point in zip(places, roadmap.places, strict=True):
+        assert one_m[point] <= finder.path(place, places[5]).length_m + pitch_m / 2
 
 
 def test_a_place_on_the_border_of_the_free_space_is_joined():

@@ -10,7 +10,7 @@ import pytest
 
 from muster.core import SafeIntervals, SharedWays, Traveller
 from muster.traffic.mission_roadmap import MissionRoadmap
-from muster.traffic.single_moves import MovePlanner
+from muster.traffic.roadmaps.edge_conflicts import annotated
 from muster_studies.jams import scenes
 
 HOLD_S = 5.0
@@ -37,8 +37,8 @@ class Aisles:
     def __init__(self, robots: int, stops: int) -> None:
         self.mission = scenes.aisles("differential-drive", 1, robots)
         shared = MissionRoadmap.of(self.mission)
-        self.roadmap, planner = shared.roadmap, MovePlanner(shared.roadmap)
-        self.search = SafeIntervals(planner.shared, self.roadmap.holding.tolist(), self.roadmap.margin_m)
+        self.roadmap = shared.roadmap
+        self.search = SafeIntervals(annotated(self.roadmap), self.roadmap.holding.tolist(), self.roadmap.margin_m)
         one = self.mission.robots[0]
         self.starts = shared.points([robot.position for robot in self.mission.robots], one)
         places = shared.points([task.position for task in self.mission.tasks], one)

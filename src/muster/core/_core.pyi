@@ -1050,9 +1050,9 @@ class SharedWays:
     Ways of all who share a roadmap: one after the other, then few at a time anew [li2021].
     """
 
-    def __init__(self, paths: SafeIntervals, travellers: Sequence[Traveller], *, order: Sequence[int], ways: int, seed: int) -> None:
+    def __init__(self, paths: SafeIntervals, travellers: Sequence[Traveller], *, order: Sequence[int], ways: int, expansions: int = 300, seed: int, at_once: bool = False) -> None:
         """
-        The first ways are in the order given; `ways` more are sought to improve them.
+        The first ways are sought in the order given; where some find none, or with `at_once`, all make way for each other, until so many expansions bring them no nearer to their stops. `ways` more are sought to improve them.
         """
 
     def change(self, changes: Sequence[tuple[int, Traveller]], *, ways: int) -> None:
@@ -1165,19 +1165,3 @@ class JointRefinement:
 
     def solution(self) -> NDArray[numpy.int64]:
         """The vertex of each robot, (steps + 1, robots)."""
-
-class MovePlanner:
-    """
-    Sequences of single moves of a team on a roadmap with annotated conflicts.
-    """
-
-    def __init__(self, roadmap: AnnotatedRoadmap) -> None: ...
-
-    def planned(self, starts: Sequence[int], goals: Sequence[int], radii: Sequence[float], priorities: Sequence[float], pinned: Sequence[bool], *, margin: float, turn_cost: float, horizon: int, settle: bool, expansions: int, tries: int, seed: int) -> tuple[str, list[tuple[int, int]], list[int], list[bool]]:
-        """
-        The outcome (arrived, horizon, unfinished, impossible), the moves (robot, edge), where all stand in the end, and who has been at its goal.
-        """
-
-    @property
-    def tables(self) -> int:
-        """The number of goals to which it knows the ways."""

@@ -33,5 +33,4 @@ NB_MODULE(_core, m) {
   muster::bind_passing_order(m);
   muster::bind_safe_intervals(m);
   muster::bind_lacam(m);
-  muster::bind_move_planner(m);
 }

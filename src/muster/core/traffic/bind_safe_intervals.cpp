@@ -89,15 +89,20 @@ void bind_safe_intervals(nb::module_& m) {
       .def(
           "__init__",
           [](SharedWays* self, SafeIntervals& paths, const std::vector<Traveller>& travellers, std::vector<int> order,
-             int ways, std::uint64_t seed) {
+             int ways, int expansions, std::uint64_t seed, bool at_once) {
             for (const Traveller& who : travellers) check(paths, who);
             check(order, travellers.size());
             check(ways);
+            if (expansions < 1) throw std::invalid_argument("expansions: expected at least 1");
             const nb::gil_scoped_release free;
-            new (self) SharedWays(paths, travellers, std::move(order), ways, seed);
+            new (self) SharedWays(paths, travellers, std::move(order), {ways, expansions, at_once}, seed);
           },
-          "paths"_a, "travellers"_a, nb::kw_only(), "order"_a, "ways"_a, "seed"_a, nb::keep_alive<1, 2>(),
-          "The first ways are in the order given; `ways` more are sought to improve them.")
+          "paths"_a, "travellers"_a, nb::kw_only(), "order"_a, "ways"_a, "expansions"_a = 300, "seed"_a,
+          "at_once"_a = false, nb::keep_alive<1, 2>(),
+          "The first ways are sought in the order given; where some find none, or with `at_once`, all make way for "
+          "each "
+          "other, until so many expansions bring them no nearer to their stops. `ways` more are sought to improve "
+          "them.")
       .def(
           "change",
           [](SharedWays& self, const std::vector<std::pair<int, Traveller>>& changes, int ways) {

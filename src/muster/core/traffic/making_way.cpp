@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "heap.hpp"
-#include "traffic/single_moves.hpp"
+#include "traffic/roadmap_steps.hpp"
 
 namespace muster {
 
@@ -19,7 +19,7 @@ constexpr int kPatientRounds = 8;  // rounds after which somebody is sent away w
 
 // From a point outwards over edges that are passable; `visit` says of each point whether to go on.
 template <class Passable, class Visit>
-void SingleMoves::search(int from, Passable passable, Visit visit) {
+void RoadmapSteps::search(int from, Passable passable, Visit visit) {
   ++search_;
   Heap<Reached> open;
   found_in_[from] = search_;
@@ -42,7 +42,7 @@ void SingleMoves::search(int from, Passable passable, Visit visit) {
   }
 }
 
-SingleMoves::Edges SingleMoves::found_way(int to) const {
+RoadmapSteps::Edges RoadmapSteps::found_way(int to) const {
   Edges way;
   for (; found_edge_[to] >= 0; to = graph_.tail(found_edge_[to])) way.push_back(found_edge_[to]);
   std::reverse(way.begin(), way.end());
@@ -50,9 +50,9 @@ SingleMoves::Edges SingleMoves::found_way(int to) const {
 }
 
 // The ways to the nearest places that are clear, the best for its own goal first.
-std::vector<SingleMoves::Edges> SingleMoves::ways_out(int robot) {
+std::vector<RoadmapSteps::Edges> RoadmapSteps::ways_out(int robot) {
   const int at = places_[robot];
-  const auto* to_wish = wish(robot) == MovingTeam::kNoGoal ? nullptr : &to_go(wish(robot));
+  const auto* to_wish = wish(robot) == MovingTeam::kNowhere ? nullptr : &to_go(wish(robot));
   std::vector<std::pair<double, Edges>> found;
   int points = 0;
   const auto visit = [&](int there, double cost) {
@@ -71,7 +71,7 @@ std::vector<SingleMoves::Edges> SingleMoves::ways_out(int robot) {
 }
 
 // Whether all who stand near the edge may be moved.
-bool SingleMoves::passable(int robot, int edge) const {
+bool RoadmapSteps::passable(int robot, int edge) const {
   for (const auto [point, metres] : roadmap_->near(edge)) {
     const int other = standing_[point];
     if (other < 0 || other == robot || metres >= team_.apart(robot, other)) continue;
@@ -81,9 +81,9 @@ bool SingleMoves::passable(int robot, int edge) const {
 }
 
 // The first edges of the shortest way from where a robot is to where it wants to be.
-SingleMoves::Edges SingleMoves::route(int robot, std::size_t most) {
+RoadmapSteps::Edges RoadmapSteps::route(int robot, std::size_t most) {
   Edges way;
-  if (wish(robot) == MovingTeam::kNoGoal) return way;
+  if (wish(robot) == MovingTeam::kNowhere) return way;
   const auto& left = to_go(wish(robot));
   for (int at = places_[robot]; left[at] > 0 && way.size() < most;) {
     int best = -1;
@@ -101,7 +101,7 @@ SingleMoves::Edges SingleMoves::route(int robot, std::size_t most) {
   return way;
 }
 
-void SingleMoves::mark(int robot, const Edges& edges, double apart) {
+void RoadmapSteps::mark(int robot, const Edges& edges, double apart) {
   ++mark_;
   marked_[places_[robot]] = mark_;
   for (const int edge : edges) {
@@ -113,43 +113,43 @@ void SingleMoves::mark(int robot, const Edges& edges, double apart) {
 
 // Two meet where nobody can step aside: the one ahead is sent past the other, to where that one can get past it in
 // turn, and goes first until it is there, as in the swap of [luna2011].
-void SingleMoves::exchange(int robot, int edge) {
+void RoadmapSteps::exchange(int robot, int edge) {
   std::vector<int> others;
   who_stands_near(robot, {&edge, 1}, others);
   for (const int other : others) {
     Errand& errand = memo_->errands[other];
-    if (team_.pinned[other] || errand.whose >= 0 || memo_->errands[robot].whose == other) continue;
+    if (team_.fixed(other) || errand.whose >= 0 || memo_->errands[robot].whose == other) continue;
     if (memo_->stalled[robot] < kPatientRounds && gets_out(other, edge, robot)) continue;
     const auto side = this_side(robot, places_[other], team_.apart(robot, other));
-    int place = MovingTeam::kNoGoal;
+    int place = MovingTeam::kNowhere;
     std::size_t steps = 0;
     search(
-        places_[other], [&](int e) { return !meets_pinned(other, e); },
+        places_[other], [&](int e) { return !meets_fixed(other, e); },
         [&](int there, double) {
           const Edges way = found_way(there);
           if (there != places_[other] && lets_past(robot, other, there, way, side)) {
             place = there;
             steps = way.size();
           }
-          return place == MovingTeam::kNoGoal;
+          return place == MovingTeam::kNowhere;
         });
-    if (place == MovingTeam::kNoGoal) continue;
+    if (place == MovingTeam::kNowhere) continue;
     errand = {place, robot, 30 + 4 * static_cast<int>(steps)};
     memo_->priorities[other] = memo_->priorities[robot] + 1;
     return;
   }
 }
 
-bool SingleMoves::meets_pinned(int robot, int edge) const {
+bool RoadmapSteps::meets_fixed(int robot, int edge) const {
   for (const auto [point, metres] : roadmap_->near(edge)) {
     const int other = standing_[point];
-    if (other >= 0 && team_.pinned[other] && metres < team_.apart(robot, other)) return true;
+    if (other >= 0 && team_.fixed(other) && metres < team_.apart(robot, other)) return true;
   }
   return false;
 }
 
 // The points that a robot can come to without getting past somebody at a place.
-std::vector<char> SingleMoves::this_side(int robot, int place, double apart) const {
+std::vector<char> RoadmapSteps::this_side(int robot, int place, double apart) const {
   std::vector<char> seen(graph_.size());
   std::vector<int> queue{places_[robot]};
   seen[places_[robot]] = 1;
@@ -165,7 +165,7 @@ std::vector<char> SingleMoves::this_side(int robot, int place, double apart) con
 
 // Whether a robot can wait on its side, off the other's way, and from there come to where it wants to be, past the
 // other at its new place.
-bool SingleMoves::lets_past(int robot, int other, int place, const Edges& way, const std::vector<char>& side) const {
+bool RoadmapSteps::lets_past(int robot, int other, int place, const Edges& way, const std::vector<char>& side) const {
   const double apart = team_.apart(robot, other);
   const auto is_met = [&](std::span<const int> edges, int point) {
     return std::any_of(edges.begin(), edges.end(), [&](int e) { return roadmap_->meets(e, point, apart); });
@@ -186,7 +186,7 @@ bool SingleMoves::lets_past(int robot, int other, int place, const Edges& way, c
 }
 
 // Whether a robot could leave an edge to another without getting past it, if all others let it.
-bool SingleMoves::gets_out(int robot, int edge, int other) {
+bool RoadmapSteps::gets_out(int robot, int edge, int other) {
   const double apart = team_.apart(robot, other);
   bool found = false;
   search(
@@ -208,6 +208,7 @@ std::vector<SingleMove> without_detours(const AnnotatedRoadmap& roadmap, const M
     return false;
   };
   for (int robot = 0; robot < team.robots(); ++robot) {
+    const std::vector<Stop>& stops = team.travellers[robot].stops;
     std::vector<std::size_t> own;
     for (std::size_t k = 0; k < moves.size(); ++k) {
       if (moves[k].robot == robot) own.push_back(k);
@@ -219,7 +220,8 @@ std::vector<SingleMove> without_detours(const AnnotatedRoadmap& roadmap, const M
       for (std::size_t b = own.size(); b-- > a + 1;) {
         if (roadmap.graph().head(moves[own[b]].edge) != place || needed(robot, place, own[a], own[b])) continue;
         bool visits = false;
-        for (std::size_t k = a; k < b; ++k) visits |= roadmap.graph().head(moves[own[k]].edge) == team.goals[robot];
+        for (std::size_t k = a; k < b; ++k)
+          visits |= std::ranges::count(stops, roadmap.graph().head(moves[own[k]].edge), &Stop::point) > 0;
         if (visits) continue;
         for (std::size_t k = a; k <= b; ++k) dropped[own[k]] = any = true;
         a = b;

@@ -292,6 +292,67 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
 
 Way SafeIntervals::way(const Traveller& who) { return path(who).value_or(Way{{}, kNever, kNever}); }
 
+std::vector<Way> SafeIntervals::in_turn(std::span<const Traveller> travellers, std::span<const SingleMove> moves) {
+  struct Progress {
+    double ready;
+    int point, edge = -1;
+    std::size_t leg = 0;
+    bool stands = true;
+  };
+  std::vector<Progress> progress;
+  std::vector<Way> ways(travellers.size(), {{}, kNever, kNever});
+  const auto stop = [&](int k) {  // passes the stops where it is
+    const Traveller& who = travellers[k];
+    Progress& now = progress[k];
+    const double stopping = 0.5 * who.manner().stopping();
+    for (; now.leg < who.stops.size() && who.stops[now.leg].point == now.point; ++now.leg) {
+      now.ready += stopping + who.stops[now.leg].hold;
+      now.stands = true;
+    }
+    const bool there = !who.stays || who.stops.empty() || who.stops.back().point == now.point;
+    const bool before = ways[k].end < kNever && !who.stays;
+    if (now.leg < who.stops.size() || !there)
+      ways[k].end = kNever;
+    else if (!before || who.stops.empty())
+      ways[k].end = now.ready;
+  };
+  for (int k = 0; k < static_cast<int>(travellers.size()); ++k) {
+    const Traveller& who = travellers[k];
+    progress.push_back({.ready = who.ready, .point = who.start});
+    if (who.fixed) {
+      ways[k].end = 0.0;
+      continue;
+    }
+    stays_[who.start].push_back({k, -kNever, kNever, who.radius});
+    stop(k);
+  }
+  for (const auto& [k, edge] : moves) {
+    const Traveller& who = travellers[k];
+    const Manner manner = who.manner();
+    Progress& now = progress[k];
+    const double angle = now.edge < 0 ? roadmap_->turn_from(who.heading, edge) : roadmap_->turn(now.edge, edge);
+    const double could = now.ready + (now.stands ? manner.setting_out(angle) : manner.turning(angle));
+    double start = could;
+    for (const auto& near : roadmap_->near(edge))
+      for (const Stay& stay : stays_[near.point])
+        if (stay.robot != k && near.metres < apart(who, stay.radius)) start = std::max(start, stay.until);
+    const int head = roadmap_->graph().head(edge);
+    for (const Pass& pass : passes_[head])
+      if (pass.robot != k && pass.gap < apart(who, pass.radius)) start = std::max(start, pass.start + tail(who));
+    for (Stay& stay : stays_[now.point])
+      if (stay.robot == k && stay.until == kNever) stay.until = start + tail(who);
+    stays_[head].push_back({k, start, kNever, who.radius});
+    for (const auto& near : roadmap_->near(edge)) passes_[near.point].push_back({k, start, near.metres, who.radius});
+    ways[k].moves.push_back({start, 0, edge, static_cast<int>(now.leg)});
+    now.ready = start + manner.along(*roadmap_, edge) + std::min(start - could, 0.5 * manner.stopping());
+    now.point = head;
+    now.edge = edge;
+    now.stands = false;
+    stop(k);
+  }
+  return ways;
+}
+
 void SafeIntervals::reserve(int robot, const Traveller& who, const Way& way) {
   const double after = tail(who);
   int point = who.start;

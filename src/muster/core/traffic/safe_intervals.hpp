@@ -13,38 +13,11 @@
 #include <vector>
 
 #include "traffic/annotated_roadmap.hpp"
+#include "traffic/joint_moves.hpp"
 #include "traffic/seconds_to_goal.hpp"
+#include "traffic/traveller.hpp"
 
 namespace muster {
-
-struct Stop {
-  int point;
-  double hold;  // seconds
-};
-
-struct Traveller {
-  int start;
-  double heading;           // radians
-  std::vector<Stop> stops;  // in order; none: it rests anywhere
-  double radius, speed, yaw_rate, acceleration;
-  double ready;  // seconds for which it stays at its start
-  bool fixed;    // it never leaves
-  bool stays;    // it stays at its last stop for good; else it leaves when it has held, to rest anywhere
-
-  Manner manner() const { return {speed, yaw_rate, acceleration}; }
-};
-
-struct TimedMove {
-  double start;  // seconds
-  int traveller, edge;
-  int stop;  // to which it leads: so many are passed
-};
-
-struct Way {
-  std::vector<TimedMove> moves;
-  double end;    // when it has held at its last stop; infinite where no path was found
-  double until;  // to which it stays where its moves end
-};
 
 class SafeIntervals {
  public:
@@ -54,6 +27,8 @@ class SafeIntervals {
   int points() const { return roadmap_->size(); }
   // What it costs to come to a point from each, kept from one plan to the next.
   const std::vector<double>& metres_to(int goal);
+  // The moves of all through their stops, in an order in which each is free.
+  JointMoves joint_moves() { return {roadmap_, margin_, to_goals_}; }
 
   // Nobody is on the roadmap.
   void clear();
@@ -61,6 +36,9 @@ class SafeIntervals {
   void want(const Traveller& who);
   // The earliest way among all who are on it; one that stays at its start where there is none.
   Way way(const Traveller& who);
+  // The ways of robots that make moves in turn, each as soon as those before it let it. Those that are fixed are on the
+  // roadmap, and nobody else; afterwards all are.
+  std::vector<Way> in_turn(std::span<const Traveller> travellers, std::span<const SingleMove> moves);
   // A robot, by its number, goes that way; it may not be on the roadmap yet.
   void reserve(int robot, const Traveller& who, const Way& way);
   // It does so no more.

@@ -13,12 +13,15 @@ namespace {
 
 constexpr double kTailsToLeave[] = {4.0, 25.0};
 constexpr int kGroup = 4;          // travellers that are planned anew at a time
+constexpr int kTries = 8;          // orders in which all make way for each other, of which the best counts
+constexpr double kMostAhead = 10;  // rounds that a try puts a traveller ahead
+constexpr double kChanged = 0.3;   // the share of travellers whose priorities a try changes
 constexpr int kMoreWhereLost = 4;  // times as many ways are sought where some find none
 
 }  // namespace
 
-SharedWays::SharedWays(SafeIntervals& roadmap, std::vector<Traveller> travellers, std::vector<int> order, int ways,
-                       std::uint64_t seed)
+SharedWays::SharedWays(SafeIntervals& roadmap, std::vector<Traveller> travellers, std::vector<int> order,
+                       const Effort& effort, std::uint64_t seed)
     : roadmap_(roadmap), random_(seed) {
   const std::size_t n = travellers.size();
   now_ = {std::move(travellers), std::move(order),    {},
@@ -26,8 +29,13 @@ SharedWays::SharedWays(SafeIntervals& roadmap, std::vector<Traveller> travellers
   std::ranges::copy_if(now_.order, std::back_inserter(now_.free), [&](int k) { return !now_.travellers[k].fixed; });
   clear();
   for (int k = 0; k < static_cast<int>(n); ++k) find_alone(k);
-  plan_all();
-  improve(ways);
+  if (effort.at_once)
+    for (const int k : now_.free) now_.ways[k].end = kNever;
+  else
+    plan_all();
+  const bool some_lost = cost().first > 0;
+  if (some_lost) take_turns(effort.expansions);
+  improve(some_lost && cost().first == 0 ? kMoreWhereLost * effort.ways : effort.ways);
 }
 
 // Those that are planned later are given a short time to leave their starts, so that few do not go round each other, or
@@ -44,6 +52,32 @@ void SharedWays::plan_all() {
     best = now_;
   }
   now_ = *std::move(best);
+  clear();
+  put_on_all_but({});
+}
+
+// All go at once, and make way for each other; their moves are made as soon as those before them let them.
+void SharedWays::take_turns(int expansions) {
+  JointMoves joint = roadmap_.joint_moves();
+  State best = now_;
+  Cost least = cost();
+  std::vector<double> ahead(now_.travellers.size());
+  for (int k = 0; k < kTries; ++k) {
+    std::vector<double> changed = ahead;
+    for (double& rounds : changed)
+      if (k > 0 && random_.uniform() < kChanged) rounds = kMostAhead * random_.uniform();
+    const std::vector<SingleMove> moves = joint.moves(now_.travellers, changed, expansions, random_.next());
+    clear();
+    now_.ways = roadmap_.in_turn(now_.travellers, moves);
+    now_.all_rest = true;
+    if (cost() < least) {
+      least = cost();
+      best = now_;
+      ahead = std::move(changed);
+    }
+    if (cost().first > 0) break;  // further tries take long, and hardly get through
+  }
+  now_ = std::move(best);
   clear();
   put_on_all_but({});
 }
@@ -137,7 +171,7 @@ SharedWays::Cost SharedWays::cost() const {
   Cost cost{0, 0.0};
   double last = 0.0;
   for (const Way& way : now_.ways) {
-    if (way.end == kNever) {
+    if (way.end == kNever || (now_.all_rest && way.until < kNever)) {
       ++cost.first;
       continue;
     }

@@ -1,5 +1,5 @@
-// Ways for all robots that share a roadmap: one robot after the other, then better by planning few of them anew, again
-// and again, among all others [li2021].
+// Ways for all robots that share a roadmap: one robot after the other, or all at once where some find no way so, then
+// better by planning few of them anew, again and again, among all others [li2021].
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,14 @@ struct Paths {
 
 class SharedWays {
  public:
-  // Seeks so many ways to improve the first ones; more where some find none.
-  SharedWays(SafeIntervals& roadmap, std::vector<Traveller> travellers, std::vector<int> order, int ways,
+  struct Effort {
+    int ways;              // that are sought to improve the first ones; more where some have found none
+    int expansions;        // of a search for moves of all at once that come no nearer to the stops, before it ends
+    bool at_once = false;  // whether no ways are sought one after the other at first
+  };
+
+  // The first ways are sought one after the other; where some find none, all go at once and make way for each other.
+  SharedWays(SafeIntervals& roadmap, std::vector<Traveller> travellers, std::vector<int> order, const Effort& effort,
              std::uint64_t seed);
 
   // Travellers, by number, do something else: their ways are sought among those of all others, and so many more ways.
@@ -48,6 +54,7 @@ class SharedWays {
     std::vector<char> cut_off;          // whether no way leads to any stop of each
     std::vector<Way> alone;             // of each, were it alone with those who never leave
     std::vector<Way> ways;
+    bool all_rest = false;        // whether each has a place to rest at in the end: then none may lose it
     double tails_to_leave = 0.0;  // see `SafeIntervals::reserve_start`
   };
 
@@ -58,6 +65,7 @@ class SharedWays {
   // And all others but some.
   void put_on_all_but(std::span<const int> group);
   void plan_all();
+  void take_turns(int expansions);
   void find_alone(int traveller);
   void plan(std::span<const int> group);
   void improve(int ways);

@@ -1,4 +1,4 @@
-"""A roadmap with the places of travellers, and its planners."""
+"""A roadmap with the places of travellers, and its planner."""
 
 from __future__ import annotations
 
@@ -14,11 +14,10 @@ from muster import core
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.traffic.journeys.travellers import Move, Point, Traveller
-from muster.traffic.roadmaps.edge_conflicts import conflicts
+from muster.traffic.roadmaps.edge_conflicts import annotated, conflicts
 from muster.traffic.roadmaps.lane_sections import ON_LANE_M
 from muster.traffic.roadmaps.roadmap import Indices, Roadmap
 from muster.traffic.roadmaps.robot_spaces import RobotSpaces
-from muster.traffic.single_moves import MovePlanner
 
 _SAME_M = 1e-6
 _ENTRIES = 6
@@ -36,7 +35,7 @@ class Standing(NamedTuple):
 
 @dataclass(frozen=True)
 class Network:
-    """A roadmap, the numbers of its points by place and layer, and its two planners.
+    """A roadmap, the numbers of its points by place and layer, and its planner.
 
     Parameters
     ----------
@@ -46,7 +45,6 @@ class Network:
 
     roadmap: Roadmap
     number: Mapping[Standing, int]
-    planner: MovePlanner
     intervals: core.SafeIntervals
     ends: list[tuple[int, int]]
 
@@ -54,10 +52,8 @@ class Network:
     def of(cls, roadmap: Roadmap) -> Network:
         standing = zip(roadmap.points.tolist(), roadmap.layer.tolist(), strict=True)
         number = {Standing((x, y), layer): k for k, ((x, y), layer) in enumerate(standing)}
-        planner = MovePlanner(roadmap)
-        rests = roadmap.holding.tolist()
-        intervals = core.SafeIntervals(planner.shared, rests, roadmap.margin_m)
-        return cls(roadmap, number, planner, intervals, roadmap.edges.tolist())
+        intervals = core.SafeIntervals(annotated(roadmap), roadmap.holding.tolist(), roadmap.margin_m)
+        return cls(roadmap, number, intervals, roadmap.edges.tolist())
 
     def standing(self, who: Traveller, at: Point) -> Standing:
         """A place as that of a robot."""

@@ -16,16 +16,12 @@ from muster.traffic.journeys.travellers import Move, Point, Traveller
 from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
 from muster.traffic.roadmaps.roadmap import Bools, Roadmap
 from muster.traffic.roadmaps.robot_spaces import Disc, RobotSpaces
-from muster.traffic.single_moves import Parameters
 
-_THERE_M = 1e-3
 _FIRST_WAYS, _WAYS = 640, 160
 """Ways that are sought to improve the first plan, and each that goes on from it, but one for each robot at least."""
 _MOST_BY_INTERVALS = 5_000_000
-"""Travellers times edges up to which whole ways are planned; beyond, all are planned step by step: that takes much
-less time to plan, and more to drive."""
-_HORIZON = 10
-"""Moves of each robot that are planned where some find no path by themselves."""
+"""Travellers times edges up to which ways are sought one after the other; beyond, all make way for each other: that
+takes much less time to plan, and more to drive."""
 _CORNERS = 8
 """Of the way round a robot that never leaves."""
 _SPARE_M = 0.01
@@ -33,7 +29,7 @@ _SPARE_M = 0.01
 
 @dataclass
 class RoadmapPlan:
-    """Plans moves of travellers over a roadmap: by safe intervals, or by priority inheritance where some find no path.
+    """Plans moves of travellers over a roadmap.
 
     Parameters
     ----------
@@ -62,7 +58,6 @@ class RoadmapPlan:
     stepwise: bool = False
     _closed: frozenset[str] = field(init=False)
     _priorities: list[str] = field(default_factory=list)
-    _goals: dict[str, tuple[Point | None, int]] = field(default_factory=dict)  # and in how many plans by steps
     _known: Network | None = None
     _more_m: list[float] = field(default_factory=list)  # radii of robots that have joined
 
@@ -79,17 +74,21 @@ class RoadmapPlan:
 
     def __call__(self, travellers: Sequence[Traveller]) -> list[Move]:
         """Moves in an order in which they are free, as far as paths are found."""
-        moves = self.whole(travellers)
-        self.stepwise = moves is None
-        return self._by_inheritance(travellers) if moves is None else moves
+        moves, through = self._planned(travellers)
+        self.stepwise = not through
+        return moves
 
     def whole(self, travellers: Sequence[Traveller]) -> list[Move] | None:
         """See `Planner`."""
-        on = self._network_for(travellers)
-        self.cut_off = frozenset(range(len(travellers)))
-        edges = on.edges_by_layer
-        if sum(edges[on.standing(who, who.start).layer] for who in travellers) > _MOST_BY_INTERVALS:
+        moves, through = self._planned(travellers)
+        if not through:
             return None
+        self.stepwise = False
+        return moves
+
+    def _planned(self, travellers: Sequence[Traveller]) -> tuple[list[Move], bool]:
+        """Moves through all stops, or to the first ones where that is not found; and whether all get there."""
+        on = self._network_for(travellers)
         ways = _WAYS if self._priorities else _FIRST_WAYS
         shared = self._shared(on, travellers, ways)
         moves, ends = shared.paths()
@@ -98,10 +97,7 @@ class RoadmapPlan:
             moves, ends = shared.paths()
         self._priorities = [travellers[k].robot.id for k in shared.order]
         self.cut_off = frozenset(k for k, end in enumerate(ends) if math.isnan(end))
-        if math.inf in ends:
-            return None
-        self.stepwise = False
-        return [on.move(traveller, edge, stop) for _, traveller, edge, stop in moves]
+        return [on.move(traveller, edge, stop) for _, traveller, edge, stop in moves], math.inf not in ends
 
     def journeys(self, travellers: Sequence[Traveller], *, ways: int, places: Sequence[Point] = ()) -> JointJourneys:
         """How each gets through all its stops among the others; so many ways are sought to improve the first ones.
@@ -189,49 +185,10 @@ class RoadmapPlan:
         first = sorted(range(len(travellers)), key=lambda k: (ranks.get(travellers[k].robot.id, math.inf), -metres[k]))
         told = [on.told(who) for who in travellers]
         each = max(1, ways // max(1, len(told)))
-        return core.SharedWays(on.intervals, told, order=first, ways=each * len(told), seed=self.seed)
-
-    def _by_inheritance(self, travellers: Sequence[Traveller]) -> list[Move]:
-        """To first stops, as far as the horizon."""
-        on = self._network_for(travellers)
-        first = {on.point(who, who.start): k for k, who in reversed(list(enumerate(travellers)))}
-        numbers = sorted(first.values())  # without those who are only thought to be where another is
-        there = [travellers[k] for k in numbers]
-        goals = [on.point(who, who.stops[0].at) if who.stops else None for who in there]
-        found = on.planner.planned(
-            [on.point(who, who.start) for who in there],
-            goals,
-            [who.robot.radius_m for who in there],
-            margin_m=on.roadmap.margin_m,
-            priorities=[self._waited(who) for who in there],
-            pinned=[who.fixed or who.ready_s > 0 or _is_there(who) for who in there],
-            seed=self.seed,
-            params=Parameters(horizon=_HORIZON * len(there)),
-        )
-        done, moves = set[int](), list[Move]()
-        for k, edge in found.moves:
-            moves.append(on.move(numbers[k], edge, int(k in done)))
-            if on.roadmap.edges[edge, 1] == goals[k] and not _rests(there[k]):
-                done.add(k)  # it stops there to do what it has to; where it goes then it makes way
-        return moves
-
-    def _waited(self, who: Traveller) -> float:
-        """Rounds for which a robot has had its goal, about: who came first goes on to come first."""
-        goal = who.stops[0].at if who.stops else None
-        before, plans = self._goals.get(who.robot.id, (None, 0))
-        plans = plans + 1 if goal == before else 0
-        self._goals[who.robot.id] = goal, plans
-        return float(_HORIZON * plans)
-
-
-def _is_there(who: Traveller) -> bool:
-    """Whether a robot stands where it is to do something next: it does that first."""
-    return bool(who.stops) and not _rests(who) and math.dist(who.start, who.stops[0].at) <= _THERE_M
-
-
-def _rests(who: Traveller) -> bool:
-    """Whether a robot has nothing more to do than to stay somewhere."""
-    return who.stays and len(who.stops) == 1 and who.stops[0].hold_s == 0.0
+        edges = on.edges_by_layer
+        many = sum(edges[on.standing(who, who.start).layer] for who in travellers) > _MOST_BY_INTERVALS
+        more = 0 if many else each * len(told)
+        return core.SharedWays(on.intervals, told, order=first, ways=more, seed=self.seed, at_once=many)
 
 
 def _to_first_stop(who: Traveller) -> Traveller:

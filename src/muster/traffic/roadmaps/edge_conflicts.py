@@ -3,15 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
+from muster import core
 from muster.mission.values.arrays import Floats, Indices
 from muster.traffic.roadmaps.lane_sections import Section, held_back
 
 _NEARER_M = 1e-9
+
+
+class WithConflicts(Protocol):
+    """Points and edges of which it is known how near each edge comes to which points.
+
+    See `muster.traffic.roadmaps.roadmap.Roadmap`, which is one.
+    """
+
+    @property
+    def points(self) -> Floats: ...
+    @property
+    def edges(self) -> Indices: ...
+    @property
+    def speed_mps(self) -> Floats: ...
+    @property
+    def reach_start(self) -> Indices: ...
+    @property
+    def reach_point(self) -> Indices: ...
+    @property
+    def reach_m(self) -> Floats: ...
+
+
+def annotated(roadmap: WithConflicts) -> core.AnnotatedRoadmap:
+    """Return a roadmap as planners of the core take it; its edges are in the order of their first points."""
+    points, edges = np.asarray(roadmap.points, dtype=np.float64), np.asarray(roadmap.edges, dtype=np.int64)
+    return core.AnnotatedRoadmap(
+        np.ascontiguousarray(points),
+        np.searchsorted(edges[:, 0], np.arange(len(points) + 1)).tolist(),
+        edges[:, 1].tolist(),
+        np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1).tolist(),
+        np.asarray(roadmap.speed_mps, dtype=np.float64).tolist(),
+        roadmap.reach_start.tolist(),
+        roadmap.reach_point.tolist(),
+        roadmap.reach_m.tolist(),
+    )
 
 
 def conflicts(

@@ -24,6 +24,10 @@ _CELLS = 12
 _FEWEST_CELLS = 6
 """Coarser maps are divided more finely."""
 _MOST_CELLS = 1_500_000
+_MOST_HALVINGS = 4
+"""So often cells are halved where a passage is too narrow for them."""
+_CELLS_ACROSS = 3.0
+"""A passage at least so many cells wide is joined cell by cell, whatever its direction."""
 _APART = 1 + 1e-6
 """Points that are to be apart are so whatever float64 says."""
 _NEIGHBOURS = 2.0
@@ -82,12 +86,29 @@ def _cells(space: GridSpace | PolygonSpace, apart_m: float) -> Grid:
     """Cells that are free as a whole, small beside the distance of robots."""
     if isinstance(space, PolygonSpace):
         west, south, east, north = space.region.bounds
-        return grid_of(space, max(apart_m * _APART / _CELLS, math.sqrt((east - west) * (north - south) / _MOST_CELLS)))
+        finest_m = math.sqrt((east - west) * (north - south) / _MOST_CELLS)
+        cell_m = max(apart_m * _APART / _CELLS, finest_m)
+        for _ in range(_MOST_HALVINGS):
+            if cell_m <= finest_m or not _hide_passages(space, cell_m, apart_m):
+                break
+            cell_m = max(cell_m / 2, finest_m)
+        return grid_of(space, cell_m)
     grid = space.grid
     finer = math.ceil(grid.resolution_m * _FEWEST_CELLS / apart_m)
     finer = max(1, min(finer, math.isqrt(_MOST_CELLS // max(1, grid.blocked.size))))
     blocked = grid.blocked.repeat(finer, axis=0).repeat(finer, axis=1)
     return Grid(blocked, grid.resolution_m / finer, grid.origin)
+
+
+def _hide_passages(space: PolygonSpace, cell_m: float, apart_m: float) -> bool:
+    """Whether the region has passages, not only corners, that are too narrow to be seen in cells of a size."""
+    import shapely
+
+    half_m = _CELLS_ACROSS * cell_m / 2
+    cores = shapely.buffer(space.region, -half_m, join_style="mitre")
+    seen = shapely.buffer(cores, half_m * _APART, join_style="mitre")
+    west, south, east, north = shapely.bounds(shapely.get_parts(shapely.difference(space.region, seen))).T
+    return bool((np.hypot(east - west, north - south) > max(apart_m, 2 * half_m)).any())
 
 
 def _inside(space: GridSpace | PolygonSpace, grid: Grid, pieces: Floats) -> Bools:
