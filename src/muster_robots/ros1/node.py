@@ -14,8 +14,8 @@ from urllib.parse import urlparse
 from xml.parsers.expat import ExpatError
 
 from muster.mission.errors import NetworkError
-from muster_robots.ros1.clock import Forward
 from muster_robots.ros1.ros import rospy
+from muster_robots.simulated_time import Forward
 
 SHUT_DOWN = "node /muster: it was shut down, or another took its name; expected it to stay"
 _USUAL = "http://localhost:11311"

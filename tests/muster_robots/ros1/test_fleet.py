@@ -21,11 +21,11 @@ TEAM = tuple(Robot(id=f"r_{k}", position=(float(k), 0.0)) for k in range(3))
 class Port:
     """Of a robot that is not there."""
 
-    broken = ""  # whose network fails
+    broken = missing = ""  # whose network fails; what is not there
     steerable = True
 
     def __init__(self, robot, topics, **_):
-        self.body, self.robot, self.untied, self.told = robot, robot.id, "", []
+        self.body, self.robot, self.told = robot, robot.id, []
 
     def cancel(self):
         self._tell("cancel")
