@@ -39,6 +39,18 @@ def become_node(name: str, master: str | None = None) -> None:
     os.environ["ROS_MASTER_URI"] = address
     logging.getLogger("rosout").setLevel(logging.WARNING)
     rospy.init_node(name, disable_signals=True, log_level=rospy.WARN)
+    _show_warnings()
+
+
+def _show_warnings() -> None:
+    """Let Muster's own warnings go to standard error, as rospy's do: it has configured logging for itself alone."""
+    shown = logging.StreamHandler()
+    shown.setFormatter(logging.Formatter("[WARN] %(message)s"))
+    for room in ("muster", "muster_robots"):
+        logging.getLogger(room).addHandler(shown)
+    for name, logger in logging.root.manager.loggerDict.items():
+        if name.partition(".")[0] in ("muster", "muster_robots") and isinstance(logger, logging.Logger):
+            logger.disabled = False
 
 
 def time_of_ros() -> Callable[[], float]:

@@ -170,6 +170,7 @@ class _Service:
         self._client, self._number = int.from_bytes(os.urandom(8), "little"), 0
         self._writer: Any = None
         self._reader: Any = None
+        self._met: frozenset[str] = frozenset()  # the servers for which they were made
         self._replies: dict[int, tuple[Any, bytes]] = {}
 
     @property
@@ -189,11 +190,9 @@ class _Service:
 
     def is_there(self) -> bool:
         """Whether a server takes requests, and answers."""
-        if self._writer is None:
+        if not self._is_matched() and self.servers != self._met:
             self._meet()
-        if self._writer is None:
-            return False
-        return bool(self._writer.get_matched_subscriptions()) and bool(self._reader.get_matched_publications())
+        return self._is_matched()
 
     def call(self, request: Call) -> int:
         """Send a request; returns its number.
@@ -215,17 +214,22 @@ class _Service:
 
     def reply(self, number: int) -> tuple[Any, bytes] | None:
         """Return the reply to a request, once, with its bytes; None while there is none."""
-        for reply, data in self._middleware.decoded(self._reply, self._reader):
+        for reply, data in () if self._reader is None else self._middleware.decoded(self._reply, self._reader):
             if reply.client == self._client:
                 self._replies[reply.number] = reply, data
         return self._replies.pop(number, None)
 
+    def _is_matched(self) -> bool:
+        ends = self._writer, self._reader
+        return None not in ends and bool(ends[0].get_matched_subscriptions() and ends[1].get_matched_publications())
+
     def _meet(self) -> None:
-        """Make writer and reader, if a server has its ends of both topics."""
+        """Make writer and reader, if a server has its ends of both topics: with the types of the one that came last."""
         requests = self._middleware.subscriptions.of_topic(self._topics[0])
         replies = self._middleware.publications.of_topic(self._topics[1])
         if not (requests and replies) or self.unfit:
             return
-        made = self._middleware.client(self._topics, (self._request, self._reply), (requests[0], replies[0]))
+        made = self._middleware.client(self._topics, (self._request, self._reply), (requests[-1], replies[-1]))
         if made is not None:
             self._writer, self._reader = made
+            self._met = frozenset(one.key for one in requests)

@@ -4,8 +4,8 @@ The server of the action is as actionlib's simple server: it sends the states of
 goal preempts the one before. Its messages are made from the definitions of move_base_msgs, written out here. Odometry
 begins where the robot starts, turned by a right angle, and amcl's tf ties it to the map (REP-105).
 
-`abort=X,Y`, `reject=X,Y`: what it does with goals there. `simple`: it goes where move_base_simple/goal says, without the
-action. `server`, `poses`: it is that alone. `untied`: nothing ties its odometry to the map. `amcl`: amcl_pose does.
+`abort=X,Y`, `reject=X,Y`: what it does with goals there. `simple`: it goes where move_base_simple/goal says, without
+the action. `poses`: it says where it is, and nothing else. `untied`: nothing ties its odometry to the map. `amcl`: amcl_pose does.
 """
 
 import math
@@ -50,7 +50,7 @@ SPEED, DT = 3.0, 0.05
 name, x, y, *words = sys.argv[1:]
 given = dict(word.partition("=")[::2] for word in words)
 place = start = complex(float(x), float(y))
-rospy.init_node(f"{name}_{'server' if 'server' in given else 'robot'}", disable_signals=True)
+rospy.init_node(name, disable_signals=True)
 
 
 def point(word):
@@ -117,8 +117,6 @@ if "simple" in given:
 odometry = rospy.Publisher(f"/{name}/odom", Odometry, queue_size=1)
 fixes = rospy.Publisher(f"/{name}/amcl_pose", PoseWithCovarianceStamped, queue_size=1, latch=True)
 tf = rospy.Publisher("/tf", TFMessage, queue_size=10)
-if "server" in given:  # its odometry alone says where the robot is
-    rospy.Subscriber(f"/{name}/odom", Odometry, lambda _: None)
 fixed_s = 0.0
 while not rospy.is_shutdown():
     time.sleep(DT)
@@ -131,8 +129,6 @@ while not rospy.is_shutdown():
     if goal is not None and goal != place:
         rest = goal - place
         place += min(abs(rest), SPEED * DT) * rest / abs(rest)
-    if "server" in given:
-        continue
     said = Odometry()
     said.header.frame_id, said.header.stamp, said.child_frame_id = f"{name}/odom", rospy.Time.now(), f"{name}/base_link"
     turned(said.pose.pose, (place - start) * -1j, -math.pi / 2)

@@ -3,7 +3,7 @@
 It knows nothing of Muster: its types are written out from the definitions of ROS 2. Its odometry begins where it
 starts, turned by a right angle (REP-105); it goes straight, 3 m/s.
 
-`nav2=humble`, `nav2=jazzy`: it serves nav2_msgs/NavigateToPose as rmw_cyclonedds does, with the results of that version.
+`nav2=humble`, `jazzy`, `kilted`: it serves NavigateToPose as rmw_cyclonedds does, with the results of that version.
 `goals`: it goes where goal_pose says. `tf`: it ties its odometry to the map on /tf; `own_tf`: on <robot>/tf, by frames
 without prefix. `amcl`: it says amcl_pose once a second. `quiet`: it publishes no odometry. `body`: its body is on /tf.
 `abort=X,Y`, `reject=X,Y`: what it does with goals there. `clock=TIMES`: it says /clock, so many times real time.

@@ -15,6 +15,7 @@ pytest.importorskip("cyclonedds")
 from muster_robots.fleet_settings import Ros2Settings
 from muster_robots.opening import ros2_fleet
 from muster_robots.ros2.action_message_types import GetResultReply, words_of
+from muster_robots.ros2.dds import DdsMiddleware
 from muster_robots.ros2.dds_endpoints import Endpoint
 
 pytestmark = pytest.mark.usefixtures("loopback")
@@ -67,6 +68,14 @@ def fleet_of():
         fleet.close()
 
 
+def wait_for_topics(*names):
+    listens, end = DdsMiddleware(), time.monotonic() + 20.0
+    while not set(names) <= {topic for topic, _ in listens.topics()}:
+        assert time.monotonic() < end, "this did not come about"
+        listens.wait(0.05)
+    listens.close()
+
+
 def until(fleet, true, most_s=30.0):
     end = time.monotonic() + most_s
     while not true():
@@ -87,8 +96,8 @@ def test_a_goal_is_reached_and_one_that_is_aborted_or_rejected_is_refused_with_i
     port.send([Waypoint((1.0, 0.0, 0.0)), Waypoint((1.0, 1.0, 0.0))])
     until(fleet, lambda: port.telemetry().passed == 2)
     for place, refused in (((2.0, 2.0, 0.0), says), ((3.0, 3.0, 0.0), "rejected")):
-        port.send([Waypoint(place)])
-        until(fleet, lambda: port.telemetry().refused)
+        order = port.send([Waypoint(place)])
+        until(fleet, lambda order=order: port.telemetry().order == order and port.telemetry().refused)
         assert port.telemetry().refused == f"navigate_to_pose: {refused}"
     port.send([Waypoint((0.0, 0.0, 0.0))])  # the robot goes on to what it can reach
     until(fleet, lambda: port.telemetry().passed == 1)
@@ -172,6 +181,7 @@ def test_a_robot_whose_orders_nobody_receives_is_named_before_the_mission_begins
 ):
     robot("r_0", 0, 0, "goals", "nav2=jazzy", "tf")
     robot("r_1", 0, 3, "tf")
+    wait_for_topics("/r_0/odom", "/r_1/odom")
     assert run(["ros2", mission, *QUICK, "--profile", profile, "--wait", "6"]) == 2
     assert capsys.readouterr().err == f"robot r_1: nobody receives its orders within 6 s; expected {expected}\n"
     named = [record.getMessage() for record in caplog.records if record.name == "muster.running.live"][-1]
