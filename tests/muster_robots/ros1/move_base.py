@@ -5,7 +5,8 @@ goal preempts the one before. Its messages are made from the definitions of move
 begins where the robot starts, turned by a right angle, and amcl's tf ties it to the map (REP-105).
 
 `abort=X,Y`, `reject=X,Y`: what it does with goals there. `simple`: it goes where move_base_simple/goal says, without
-the action. `poses`: it says where it is, and nothing else. `untied`: nothing ties its odometry to the map. `amcl`: amcl_pose does.
+the action. `poses`: it says where it is, and nothing else. `untied`: nothing ties its odometry to the
+map. `amcl`: amcl_pose does.
 """
 
 import math

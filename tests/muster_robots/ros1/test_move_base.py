@@ -78,9 +78,8 @@ def test_two_robots_do_all_tasks_and_what_one_is_refused_the_other_does(ros, mis
     [("abort", "aborted (Failed to find a valid plan)"), ("reject", "rejected (Quaternion has length close to zero)")],
 )
 def test_a_task_that_move_base_refuses_is_lost_with_its_words_and_the_others_are_done(ros, tmp_path, how, words):
-    (tmp_path / "m.yaml").write_text(
-        MISSION.replace("  - {id: r_1, position: [0, 3], speed_mps: 3, radius_m: 0.2}\n", "")
-    )
+    alone = "".join(line for line in MISSION.splitlines(keepends=True) if "id: r_1" not in line)
+    (tmp_path / "m.yaml").write_text(alone, encoding="utf-8")
     started(ros, "r_0", 0, 0, f"{how}=4,3")
     report, told = done(ros.muster("m.yaml", *QUICK, "--profile", "move_base"))
     assert set(report["tasks_done"]) == TASKS - {"t_4"}
@@ -133,8 +132,8 @@ def test_all_tasks_are_done_where_the_master_is_started_anew(own_ros, mission):
         ),
         (
             ("untied",),
-            "/r_1/odom is in frame r_1/odom, which tf does not tie to map{}; expected tf from map to r_1/odom, or a pose "
-            "in map, or --odometry start",
+            "/r_1/odom is in frame r_1/odom, which tf does not tie to map{}; expected tf from map to r_1/odom, or a "
+            "pose in map, or --odometry start",
         ),
     ],
 )
