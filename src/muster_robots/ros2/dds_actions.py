@@ -12,7 +12,7 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol, TypeVar
 
 from muster.mission.errors import NetworkError
 from muster_robots.navigation import Navigation, Outcome
@@ -31,18 +31,44 @@ from muster_robots.ros2.action_message_types import (
     SendGoalRequest,
     words_of,
 )
+from muster_robots.ros2.dds_endpoints import Endpoint, Endpoints
+from muster_robots.ros2.description import Message
 from muster_robots.ros2.message_types import PoseStamped
-from muster_robots.ros2.middleware import line_of
+from muster_robots.ros2.middleware import Reader, line_of
 
-if TYPE_CHECKING:
-    from muster_robots.ros2.dds import DdsMiddleware
-
+M = TypeVar("M", bound=Message)
 _STATUS: dict[int, Any] = {4: "succeeded", 5: "canceled", 6: "aborted"}
 """By action_msgs/GoalStatus."""
 _ANSWERS_WITHIN_S = 5.0
 """Seconds within which a server accepts or rejects a goal, or it was lost on the way."""
 _RESULT_WITHIN_S = 1.0
 """Seconds for which the result of a goal that has ended is waited for, as it has the reason."""
+
+
+class Participant(Protocol):
+    """What a client of an action needs of a `DdsMiddleware`."""
+
+    error: Any
+    publications: Endpoints
+    subscriptions: Endpoints
+
+    def reader(self, topic: str, message: type[M]) -> Reader[M]:
+        """See `Middleware`."""
+        ...
+
+    def client(
+        self, topics: tuple[str, str], messages: tuple[type[Message], type[Message]], theirs: tuple[Endpoint, Endpoint]
+    ) -> tuple[Any, Any] | None:
+        """Make the writer of requests and the reader of replies of a service; None while their types are not known."""
+        ...
+
+    def encoded(self, message: Message, kind: Any) -> Any:
+        """Return a message as a sample of the type that a writer has."""
+        ...
+
+    def decoded(self, message: type[M], reader: Any) -> list[tuple[M, bytes]]:
+        """Return what a reader has received, as messages and as bytes."""
+        ...
 
 
 class DdsNavigator:
@@ -54,7 +80,7 @@ class DdsNavigator:
         The action's name, such as `/r_0/navigate_to_pose`.
     """
 
-    def __init__(self, middleware: DdsMiddleware, action: str) -> None:
+    def __init__(self, middleware: Participant, action: str) -> None:
         self._action = f"{action}/_action"
         self.sends = _Service(middleware, f"{self._action}/send_goal", SendGoalRequest, SendGoalReply)
         self.results = _Service(middleware, f"{self._action}/get_result", GetResultRequest, GetResultReply)
@@ -163,7 +189,7 @@ class _DdsNavigation:
 class _Service:
     """A client of one service. Its writer and reader are made when a server is there, with the types that it tells."""
 
-    def __init__(self, middleware: DdsMiddleware, name: str, request: type[Call], reply: type[Call]) -> None:
+    def __init__(self, middleware: Participant, name: str, request: type[Call], reply: type[Call]) -> None:
         self._middleware, self._name, self._request, self._reply = middleware, name, request, reply
         path = name.strip("/")
         self._topics = f"rq/{path}Request", f"rr/{path}Reply"
