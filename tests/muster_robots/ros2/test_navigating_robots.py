@@ -85,7 +85,11 @@ def until(fleet, true, most_s=30.0):
 
 @pytest.mark.parametrize(
     ("version", "says"),
-    [("humble", "aborted"), ("jazzy", "aborted (error 9003)"), ("kilted", "aborted (no way)")],
+    [
+        ("jazzy", "aborted (error 9003)"),
+        pytest.param("humble", "aborted", marks=pytest.mark.long),
+        pytest.param("kilted", "aborted (no way)", marks=pytest.mark.long),
+    ],
 )
 def test_a_goal_is_reached_and_one_that_is_aborted_or_rejected_is_refused_with_its_words(
     robot, fleet_of, version, says
@@ -132,7 +136,12 @@ def test_a_goal_is_given_to_the_server_that_comes_in_place_of_one_that_was_kille
 
 @pytest.mark.parametrize(
     "words",
-    [("tf",), ("own_tf",), ("amcl",), ("tf", "body", "quiet"), ("own_tf", "body", "quiet"), ("amcl", "quiet")],
+    [
+        ("tf",),
+        ("own_tf", "body", "quiet"),
+        *(pytest.param(some, marks=pytest.mark.long) for some in (("own_tf",), ("amcl",), ("amcl", "quiet"))),
+        pytest.param(("tf", "body", "quiet"), marks=pytest.mark.long),
+    ],
     ids=" ".join,
 )
 def test_a_robot_is_where_tf_or_its_localisation_says(robot, fleet_of, words):
@@ -169,6 +178,7 @@ def test_without_a_clock_it_is_one_line(robot, mission, capsys):
     assert capsys.readouterr().err == said
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("profile", "expected"),
     [
