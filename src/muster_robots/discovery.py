@@ -7,7 +7,11 @@ from collections.abc import Callable, Iterable
 
 from muster.mission.errors import ParameterError
 
-SHARED = {"odom": "nav_msgs/Odometry", "pose": "geometry_msgs/PoseStamped"}
+SHARED = {
+    "odom": "nav_msgs/Odometry",
+    "pose": "geometry_msgs/PoseStamped",
+    "amcl_pose": "geometry_msgs/PoseWithCovarianceStamped",
+}
 """Topics that say where a robot is, and their types."""
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 """What ROS takes for one part of a name."""

@@ -26,8 +26,10 @@ from muster.mission.value_types import (
 )
 from muster.motion.avoidance_names import AUTO, AVOIDANCE
 from muster_robots.custody import CustodyLimits
+from muster_robots.profiles import PROFILES, profile_help, profiles_of
 
 _POSES = r"(?=.*\{robot\})(?!.*\{robot\}.*\{robot\})/?(\{robot\}|[A-Za-z])(\w|\{robot\})*(/(\w|\{robot\})+)*"
+_USUAL = {"frame": "map", "odometry": "map", "poses": ""}
 _WAIT = Number(minimum=0.0, maximum=1e6)
 
 
@@ -49,8 +51,22 @@ class _Name:
         return {"type": "string"}
 
 
+class _Profiled(Settings):
+    """Settings whose values a profile may give: a field that is not given has its profile's value, or the usual one."""
+
+    ros: ClassVar[Literal["ros1", "ros2"]]
+    usual: ClassVar[Mapping[str, Any]]
+
+    @classmethod
+    def settled(cls, values: Mapping[str, Any]) -> Mapping[str, Any]:
+        """See `Checked`."""
+        profile = PROFILES.get(values.get("profile") or "")
+        given = {**cls.usual, **({} if profile is None else profile.sets(cls.ros))}
+        return {name: value for name, value in given.items() if values.get(name) is None}
+
+
 @record
-class RosSettings(Settings):
+class RosSettings(_Profiled):
     """Where robots on ROS are, and when they are waited for no longer."""
 
     namespace: str = spec(
@@ -58,6 +74,19 @@ class RosSettings(Settings):
         "namespace that holds those of the robots; empty: the root",
         default="",
         metavar="NAME",
+    )
+    frame: str = spec(Text(), "the mission's frame, for tf; map without it", default=None, metavar="FRAME")
+    odometry: Literal["map", "start"] = spec(
+        Choice(("map", "start")),
+        "odometry is in a frame that tf ties to the map, or in <robot>/odom, from the robot's start in the mission; "
+        "map without it",
+        default=None,
+    )
+    poses: str = spec(
+        _Name(_POSES, "a topic such as /vrpn_client_node/{robot}/pose"),
+        "where motion capture publishes poses, such as /vrpn_client_node/{robot}/pose; <robot>/pose without it",
+        default=None,
+        metavar="TOPIC",
     )
     wait_s: float = spec(_WAIT, "how long the mission's robots are waited for", default=10.0)
     known_only: bool = spec(Flag(), "robots that the mission does not name do not join", default=False)
@@ -67,15 +96,18 @@ class RosSettings(Settings):
 class Ros1Settings(RosSettings):
     """How robots on ROS 1 are reached and steered."""
 
+    ros: ClassVar = "ros1"
+    usual: ClassVar = {**_USUAL, "drive": "cmd_vel"}
+    profile: str | None = spec(Choice(profiles_of("ros1")), profile_help("ros1"), default=None)
     master: str | None = spec(
         Text(), "the ROS master; ROS_MASTER_URI, or localhost, without it", default=None, metavar="URI"
     )
-    drive: Literal["cmd_vel", "goals"] = spec(
-        Choice(("cmd_vel", "goals")),
-        "what robots take: velocities, or goals on WP, to which they find their way themselves",
-        default="cmd_vel",
+    drive: Literal["cmd_vel", "goals", "move_base", "move_base_simple"] = spec(
+        Choice(("cmd_vel", "goals", "move_base", "move_base_simple")),
+        "what robots take: velocities, or goals to which they find their way themselves: on WP, of the action "
+        "move_base, or on move_base_simple/goal; cmd_vel without it",
+        default=None,
     )
-    frame: str = spec(Text(), "the mission's frame, for tf", default="map", metavar="FRAME")
     arrival_m: float = spec(
         Number(minimum=0.001, maximum=100.0), "distance to a way point at which it counts as reached", default=0.1
     )
@@ -85,24 +117,14 @@ class Ros1Settings(RosSettings):
         "how robots that take velocities pass each other; auto: by orca; rvo, hrvo and avo in the plane",
         default=AUTO,
     )
-    odometry: Literal["map", "start"] = spec(
-        Choice(("map", "start")),
-        "odometry is in a frame that tf ties to the map, or in <robot>/odom, from the robot's start in the mission",
-        default="map",
-    )
-    poses: str = spec(
-        _Name(_POSES, "a topic such as /vrpn_client_node/{robot}/pose"),
-        "where motion capture publishes poses, such as /vrpn_client_node/{robot}/pose; empty: <robot>/pose",
-        default="",
-        metavar="TOPIC",
-    )
 
     @classmethod
     def cross_check(cls, values: Mapping[str, Any]) -> list[Fault]:
         """Refuse avoidance for robots that find their way themselves."""
         avoidance = values.get("avoidance", AUTO)
-        if values.get("drive") == "goals" and avoidance not in (AUTO, "orca"):
-            return [Fault(("avoidance",), avoidance, "auto with drive goals: robots find their way themselves")]
+        drive = values.get("drive") or "cmd_vel"
+        if drive != "cmd_vel" and avoidance not in (AUTO, "orca"):
+            return [Fault(("avoidance",), avoidance, f"auto with drive {drive}: robots find their way themselves")]
         return []
 
 
@@ -110,11 +132,19 @@ class Ros1Settings(RosSettings):
 class Ros2Settings(RosSettings):
     """How robots on ROS 2 are reached."""
 
+    ros: ClassVar = "ros2"
+    usual: ClassVar = {**_USUAL, "give": "goals"}
+    profile: str | None = spec(Choice(profiles_of("ros2")), profile_help("ros2"), default=None)
     domain: int | None = spec(
         Whole(maximum=232), "domain of ROS 2; ROS_DOMAIN_ID, or 0, without it", default=None, metavar="N"
     )
     give: Literal["goals", "nav2"] = spec(
-        Choice(("goals", "nav2")), "how goals are sent: goal_pose, or Nav2's navigate_to_pose", default="goals"
+        Choice(("goals", "nav2")),
+        "how goals are sent: on goal_pose, or by Nav2's action navigate_to_pose; goals without it",
+        default=None,
+    )
+    use_sim_time: bool = spec(
+        Flag(), "the mission goes by /clock, as the robots' nodes with this parameter do", default=False
     )
     by: Literal["dds", "rclpy"] | None = spec(
         Choice(("dds", "rclpy")), "the middleware; rclpy if it can be imported, or dds, without it", default=None

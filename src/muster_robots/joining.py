@@ -19,6 +19,9 @@ from muster_robots.discovery import robots_in
 class _Port(Protocol):
     body: Robot
 
+    @property
+    def missing(self) -> str: ...
+
     def telemetry(self) -> Telemetry | None: ...
 
 
@@ -71,8 +74,9 @@ class Newcomers(Generic[P]):
                 self._meet(Robot(id=name, position=self._origin))
 
     def located(self) -> list[P]:
-        """The ports of robots whose position is known by now; `body` has it."""
-        found = [(name, said) for name, port in self.ports.items() if (said := port.telemetry()) is not None]
+        """The ports of robots that can be driven by now; `body` has their position."""
+        ready = [(name, port) for name, port in self.ports.items() if not port.missing]
+        found = [(name, said) for name, port in ready if (said := port.telemetry()) is not None]
         for name, said in found:
             body = self.ports[name].body
             self.ports[name].body = replace(body, position=said.position[: len(self._origin)])

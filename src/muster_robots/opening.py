@@ -46,6 +46,10 @@ def ros2_fleet(mission: Mission, settings: Ros2Settings, **more: Any) -> Any:
         give=settings.give,
         namespace=settings.namespace,
         arrival=Arrival(near_m=settings.arrival_m),
+        frame=settings.frame,
+        odometry=settings.odometry,
+        poses=settings.poses,
+        use_sim_time=settings.use_sim_time,
         joins=not settings.known_only,
         **more,
     )

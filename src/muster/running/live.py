@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 import threading
 import time
@@ -58,6 +59,9 @@ _WAIT_S = 10.0
 """Seconds for which maps are waited for where the settings of a fleet do not say how long robots are."""
 ELSEWHERE_M = 0.5
 """Metres from where a mission says that a robot starts, from which it stands elsewhere."""
+NAMED_AFTER_S = 1.5
+"""Seconds after which robots that are waited for are named: less than 2, more than their discovery usually takes."""
+_log = logging.getLogger(__name__)
 
 
 def carry_out_live(
@@ -359,33 +363,44 @@ class _Heard(Protocol):
         ...
 
     def robots_not_ready(self) -> Mapping[str, str]:
-        """Robots of the mission that have not said where they are, and what is missing."""
+        """Robots of the mission that cannot be sent anywhere, and what is missing: "found; expected something"."""
         ...
 
 
 def wait_for_robots(
     fleet: _Heard, halt: threading.Event, wait_s: float, needed: str = "its pose", *, some: bool = False
 ) -> None:
-    """Until nothing is missing of the mission's robots, of what is needed, or `halt` is set.
+    """Wait until nothing is missing of the mission's robots, or `halt` is set.
+
+    Where more time is given, each robot of which something is missing after `NAMED_AFTER_S` is named in a warning.
 
     Parameters
     ----------
-    some
-        whether those that are ready when the time is over are enough, as of a mission that is under way.
+    needed : str
+        What is expected of a robot whose line in `robots_not_ready` does not say so.
+    some : bool
+        Whether those that are ready when the time is over are enough, as of a mission that is under way.
 
     Raises
     ------
     NetworkError
         if something is missing when the time is over.
     """
-    until = time.monotonic() + wait_s
+    begin = time.monotonic()
+    names_at_s = NAMED_AFTER_S if wait_s > NAMED_AFTER_S else math.inf
     while (robots_not_ready := fleet.robots_not_ready()) and not halt.is_set():
-        if time.monotonic() > until:
+        waited_s = time.monotonic() - begin
+        if waited_s > wait_s:
             if some and len(robots_not_ready) < len(fleet.ports):
                 return
             robot, why = next(iter(robots_not_ready.items()))
+            found, _, expected = why.partition("; expected ")
             more = f" (and {len(robots_not_ready) - 1} more)" if len(robots_not_ready) > 1 else ""
-            raise NetworkError(f"robot {robot}: {why} within {wait_s:g} s{more}; expected {needed}")
+            raise NetworkError(f"robot {robot}: {found} within {wait_s:g} s{more}; expected {expected or needed}")
+        if waited_s > names_at_s:
+            names_at_s = math.inf
+            for robot, why in robots_not_ready.items():
+                _log.warning("robot %s: %s; it is waited for up to %g s", robot, why, wait_s)
         time.sleep(0.05)
 
 

@@ -12,7 +12,7 @@ from muster.mission.errors import MissingExtraError
 PACKAGES = "python3-rospy python3-nav-msgs python3-std-srvs python3-tf2-msgs"
 """Of Debian 12; other message packages come with them."""
 _PLACES = ("/opt/ros/noetic/lib/python3/dist-packages", "/usr/lib/python3/dist-packages")
-_NEEDED = ("rospy", "geometry_msgs", "nav_msgs", "std_msgs", "std_srvs", "tf2_msgs")
+_NEEDED = ("rospy", "genpy", "actionlib_msgs", "geometry_msgs", "nav_msgs", "std_msgs", "std_srvs", "tf2_msgs")
 
 
 def require_rospy(more: Sequence[str] = ()) -> None:

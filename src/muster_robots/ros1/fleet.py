@@ -7,6 +7,7 @@ is ROS' own: that of /clock where `/use_sim_time` is set, and then robots are st
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -23,7 +24,7 @@ from muster.motion.port import Place
 from muster.perception.robot_grids import RobotGrid
 from muster_robots.discovery import NAME, pose_topics, topics_in
 from muster_robots.fleet_settings import Ros1Settings
-from muster_robots.ros1.clock import Forward, MissionClock
+from muster_robots.ros1.clock import MissionClock
 from muster_robots.ros1.joining import Ros1Newcomers
 from muster_robots.ros1.map_frame import MapFrame
 from muster_robots.ros1.node import SHUT_DOWN, is_ending, publish, time_of_ros
@@ -31,12 +32,13 @@ from muster_robots.ros1.port import Ros1Port
 from muster_robots.ros1.robot_maps import Ros1Maps
 from muster_robots.ros1.ros import TFMessage, rospy
 from muster_robots.ros1.static_frames import static_frames
+from muster_robots.simulated_time import Forward
 from muster_robots.steering import STILL, Steering
 from muster_robots.yielding import Yielding
 
 _LOOK_S = 0.5
 _HEARD_S = 0.5
-"""A robot that is silent for longer gets the command to stand."""
+"""A robot that is silent for longer gets the command to stand; one with navigation of its own (move_base) does not."""
 _TICK_S = 0.01
 """Real time between two looks at the clock: a simulator's may go faster than real time, or stand."""
 
@@ -156,7 +158,7 @@ class Ros1Fleet:
             self.clock.resume()
 
     def robots_not_ready(self) -> dict[str, str]:
-        """Robots of the mission that have not said where they are, and why that may be.
+        """Robots of the mission that cannot be driven yet: what is missing, and what is expected.
 
         Raises
         ------
@@ -166,13 +168,7 @@ class Ros1Fleet:
         self._require_steered()
         if isinstance(self._now, Forward) and not self._now.has_begun:
             return dict.fromkeys(self._all(), "/use_sim_time is set, and nothing is on /clock")
-        missing = {
-            name: self._frame.untied(port.untied)
-            if port.untied
-            else f"nothing on {self.topics(name)}/odom or {self._pose_topic(name) or self.topics(name) + '/pose'}"
-            for name, port in self._all().items()
-            if port.telemetry() is None
-        }
+        missing = {name: missing for name, port in self._all().items() if (missing := port.missing)}
         without_map = {name: why for name in self._all() if (why := self._maps.missing(name))}
         return without_map | missing
 
@@ -276,7 +272,8 @@ class Ros1Fleet:
                     self._tell_all(Ros1Port.stand)
 
     def _steer(self) -> None:
-        steered_robots = [port.steered(within_s=_HEARD_S, paused=self.clock.paused) for port in self._ports.values()]
+        within_s = _HEARD_S if self._drive in ("cmd_vel", "goals") else math.inf
+        steered_robots = [port.steered(within_s=within_s, paused=self.clock.paused) for port in self._ports.values()]
         present = [steered for steered in steered_robots if steered is not None]
         team = self._yielding.arranged(self.clock.unpaused_s, present)
         told = self._steering.velocities(team) if self._drive == "cmd_vel" else {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from muster.mission.errors import TransformError
@@ -22,10 +23,15 @@ class MapFrame(TiedFrames):
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
+        self._watched: dict[str, Callable[[], None]] = {}
         self._heard = [
             hear("/tf", TFMessage, self._take, callback_args=False, queue_size=100),
             hear("/tf_static", TFMessage, self._take, callback_args=True, queue_size=100),
         ]
+
+    def watch(self, frame: str, do: Callable[[], None]) -> None:
+        """Call a function after each transform of /tf that moves a frame."""
+        self._watched[frame.strip("/")] = do
 
     def close(self) -> None:
         """Listen no more."""
@@ -43,3 +49,6 @@ class MapFrame(TiedFrames):
                 self.take(one.header.frame_id, one.child_frame_id, stamp_s, matrix, static=static, now_s=now_s)
             except TransformError as error:
                 rospy.logwarn_throttle(10.0, f"tf: {error}")
+                continue
+            if not static and (do := self._watched.get(one.child_frame_id.strip("/"))) is not None:
+                do()

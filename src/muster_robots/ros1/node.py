@@ -14,8 +14,8 @@ from urllib.parse import urlparse
 from xml.parsers.expat import ExpatError
 
 from muster.mission.errors import NetworkError
-from muster_robots.ros1.clock import Forward
 from muster_robots.ros1.ros import rospy
+from muster_robots.simulated_time import Forward
 
 SHUT_DOWN = "node /muster: it was shut down, or another took its name; expected it to stay"
 _USUAL = "http://localhost:11311"
@@ -39,6 +39,18 @@ def become_node(name: str, master: str | None = None) -> None:
     os.environ["ROS_MASTER_URI"] = address
     logging.getLogger("rosout").setLevel(logging.WARNING)
     rospy.init_node(name, disable_signals=True, log_level=rospy.WARN)
+    _show_warnings()
+
+
+def _show_warnings() -> None:
+    """Let Muster's own warnings go to standard error, as rospy's do: it has configured logging for itself alone."""
+    shown = logging.StreamHandler()
+    shown.setFormatter(logging.Formatter("[WARN] %(message)s"))
+    for room in ("muster", "muster_robots"):
+        logging.getLogger(room).addHandler(shown)
+    for name, logger in logging.root.manager.loggerDict.items():
+        if name.partition(".")[0] in ("muster", "muster_robots") and isinstance(logger, logging.Logger):
+            logger.disabled = False
 
 
 def time_of_ros() -> Callable[[], float]:

@@ -8,27 +8,22 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable, Sequence
-from typing import Any, Literal
+from dataclasses import replace
+from typing import Any
 
 from muster.mission.model import Robot
 from muster.motion.frames import Floats
 from muster.motion.port import Place, Telemetry, Waypoint
 from muster_robots.follower import Follower
-from muster_robots.pose_port import goal_heading, require_finite
+from muster_robots.navigation import Ended
+from muster_robots.pose_port import Attention, require_finite
 from muster_robots.ros1.clock import MissionClock
 from muster_robots.ros1.map_frame import MapFrame
-from muster_robots.ros1.message_conversion import place_and_heading, pose_stamped, tf_of, twist_of
-from muster_robots.ros1.node import publish
+from muster_robots.ros1.message_conversion import place_and_heading, tf_of
+from muster_robots.ros1.orders import Course, Drive, orders_for
 from muster_robots.ros1.pose_listener import PoseListener
-from muster_robots.ros1.ros import PoseStamped, Twist, rospy
-from muster_robots.steering import STILL, SteeredRobot, Velocity
+from muster_robots.steering import SteeredRobot, Velocity
 from muster_robots.tied_frames import OWN
-
-Drive = Literal["cmd_vel", "goals"]
-_TOLD_STILL_S = 1.0
-"""Seconds for which a robot without way points gets zero velocities; after that a person may drive it."""
-_AGAIN_S = 1.0
-"""After which a goal is given again, for those that did not hear it."""
 
 
 class Ros1Port:
@@ -70,17 +65,16 @@ class Ros1Port:
         on_pose: Callable[[str, Any], None] | None = None,
     ) -> None:
         self.body = robot
-        self._drive, self._frame, self._flat, self._lock = drive, frame, flat, lock
+        self._frame, self._flat, self._lock = frame, flat, lock
         self._clock, self._on_pass, self._on_pose = clock, on_pass, on_pose
         self._follower = Follower(arrival_m=arrival_m, turned_rad=0.1, flat=flat or robot.kind == "ground")
         self._last_word: Telemetry | None = None
         self._height = 0.0
-        self._heard_s, self._stood_s, self._given_s = -math.inf, -math.inf, -math.inf
+        self._heard_s = -math.inf
         self._commanded = False  # whether it was ever sent anywhere
-        self._given: tuple[int, int] | None = None
-        self._facing = 0.0  # of the goal that was given, where its way point asks for no heading
-        self._goals = rospy.Publisher(f"{topics}/WP", PoseStamped, queue_size=1, latch=True)
-        self._velocities = rospy.Publisher(f"{topics}/cmd_vel", Twist, queue_size=1)
+        self._refused = ""
+        self._orders = orders_for(drive, topics, frame.name, lambda: clock.unpaused_s, lock)
+        self._attention = Attention(robot.id, self._orders.expected, lambda: self._orders.received)
         self._listener = PoseListener(topics, frame, self._hear, pose_topic=pose_topic)
 
     @property
@@ -97,10 +91,12 @@ class Ros1Port:
         """
         require_finite(self.robot, waypoints)
         with self._lock:
-            self._stood_s = self._clock.unpaused_s if waypoints else self._stood_s
             order = self._follower.take(waypoints)
+            self._refused = ""
             self._commanded = self._commanded or bool(waypoints)
-            if not waypoints:
+            if waypoints:
+                self._orders.begin(self._clock.unpaused_s)
+            else:
                 self.stand()
         return order
 
@@ -109,13 +105,15 @@ class Ros1Port:
         return self.send(())
 
     @property
-    def untied(self) -> str:
-        """A frame in which it gives poses that nothing ties to the map."""
-        return self._listener.untied
+    def missing(self) -> str:
+        """What is missing of what it takes to drive it, and what is expected; empty if nothing is."""
+        if self._last_word is None:
+            return self._listener.untied or f"nothing on {self._listener.expected}"
+        return self._attention.missing
 
     def telemetry(self) -> Telemetry | None:
         """See `RobotPort`."""
-        return self._last_word
+        return self._attention.judged(self._last_word)
 
     def steered(self, *, within_s: float, paused: bool) -> SteeredRobot | None:
         """How it is to be steered; None if nothing is known of it. A robot that is silent for a while stands."""
@@ -129,18 +127,19 @@ class Ros1Port:
         return SteeredRobot(self.body, said.position, said.heading, said.velocity, aim, arrived, waits)
 
     def speak(self, steered: SteeredRobot, velocity: Velocity) -> None:
-        """Tell the robot what it is to do now, and others where it goes."""
-        now = self._clock.unpaused_s
-        if steered.aim is not None:
-            self._stood_s = now
-        if self._drive == "cmd_vel":
-            if now - self._stood_s <= _TOLD_STILL_S:
-                publish(self._velocities, twist_of(velocity))
-        elif steered.aim is None:
-            if self._given is not None and (self._follower.aim is not None or self._given == self._next):
-                self._stand_still()  # paused, or not heard; or it has made room, and is back
-        elif self._given != self._next or now - self._given_s > _AGAIN_S:
-            self._give(steered.aim, now)
+        """Tell the robot what it is to do now."""
+        said = self._last_word
+        assert said is not None  # or nobody would steer it
+        now, follower = self._clock.unpaused_s, self._follower
+        under_way = follower.aim is not None and not follower.stays
+        place = self._goal(said.position if steered.aim is None else steered.aim.position)
+        at = (follower.order, follower.passed)
+        course = Course(now, at, steered.aim, place, velocity, said, follower.aim is None, under_way)
+        ended = self._orders.speak(course)
+        if ended is not None and under_way:
+            self._take_end(ended, said)
+        for pose in self._orders.poses():
+            self._listener.hear_fix(pose)
 
     def frames(self) -> list[Any]:
         """For tf: where the robot is, and its next way point."""
@@ -151,45 +150,33 @@ class Ros1Port:
         here = tf_of(self._frame.name, f"{OWN}{self.robot}", (*said.position[:2], height), said.heading)
         if aim is None:
             return [here]
-        return [here, tf_of(self._frame.name, f"{OWN}{self.robot}/goal", self._goal(aim), aim.heading or 0.0)]
+        return [here, tf_of(self._frame.name, f"{OWN}{self.robot}/goal", self._goal(aim.position), aim.heading or 0.0)]
 
     def stand(self) -> None:
         """Stand where it is, at once, if it was ever sent anywhere."""
         with self._lock:
             if self._commanded:
-                self._stood_s = self._clock.unpaused_s
-                self._stand_still()
+                said = self._last_word
+                here = (0.0, 0.0, 0.0) if said is None else self._goal(said.position)
+                self._orders.stand(self._clock.unpaused_s, here, said)
 
     def close(self) -> None:
         """Hear and say no more."""
         self._listener.close()
-        for link in (self._goals, self._velocities):
-            link.unregister()
+        self._orders.close()
 
-    def _give(self, aim: Waypoint, now: float) -> None:
-        if self._given != self._next:
-            self._facing = goal_heading(aim, self._last_word)
-        heading = self._facing if aim.heading is None else aim.heading
-        publish(self._goals, pose_stamped(self._frame.name, self._goal(aim), heading))
-        self._given, self._given_s = self._next, now
+    def _take_end(self, ended: Ended, said: Telemetry) -> None:
+        """Take in that its navigation has arrived, or why it does not get there."""
+        self._refused = ended.reason
+        if ended.reason:
+            self._last_word = replace(said, refused=ended.reason)
+            self._on_pass()
+        else:
+            self._follower.arrive(self._clock.time_s)
 
-    @property
-    def _next(self) -> tuple[int, int]:
-        """The way point that is next, by its order and its number there."""
-        return self._follower.order, self._follower.passed
-
-    def _stand_still(self) -> None:
-        """A zero velocity, or where it is as its goal."""
-        self._given = None
-        if self._drive == "cmd_vel":
-            publish(self._velocities, twist_of(STILL))
-        elif self._last_word is not None:
-            here = Waypoint(self._last_word.position)
-            publish(self._goals, pose_stamped(self._frame.name, self._goal(here), self._last_word.heading))
-
-    def _goal(self, aim: Waypoint) -> Place:
+    def _goal(self, place: Place) -> Place:
         """In the plane the height is the robot's own affair."""
-        x, y, z = aim.position
+        x, y, z = place
         return (x, y, self._height if self._flat else z)
 
     def _hear(self, message: Any, matrix: Floats, ahead: Place | None) -> None:
@@ -204,7 +191,8 @@ class Ros1Port:
             now = self._clock.time_s
             passed = self._follower.hear(now, place, heading)
             told = self._follower
-            self._last_word = Telemetry(now, place, heading, velocity, told.odometry_m, told.order, told.passed)
+            counted = told.odometry_m, told.order, told.passed
+            self._last_word = Telemetry(now, place, heading, velocity, *counted, refused=self._refused)
         if passed:
             self._on_pass()
         if self._on_pose is not None:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any, Literal
 
-from muster.mission.model import Mission, Robot
-from muster.motion.frames import body_in_global
+from muster.mission.model import Mission
 from muster.perception.camera import mount_of_mission
 from muster_robots.ros1.message_conversion import stamped_transform
-from muster_robots.tied_frames import OWN
+from muster_robots.tied_frames import OWN, start_frame, start_pose
 
 Odometry = Literal["map", "start"]
 """Of which frame a robot's odometry is: one that tf ties to the map, or `<robot>/odom`, which begins at its start."""
@@ -39,13 +37,6 @@ def static_frames(
     ]
     if odometry == "map":
         return cameras
-    at_rest = [0.0] * 6
     return cameras + [
-        stamped_transform(frame, f"{topics(robot.id).strip('/')}/odom", body_in_global(_start(robot), at_rest))
-        for robot in mission.robots
+        stamped_transform(frame, start_frame(topics(robot.id)), start_pose(robot)) for robot in mission.robots
     ]
-
-
-def _start(robot: Robot) -> tuple[float, ...]:
-    x, y, z = (*robot.position, 0.0)[:3]
-    return x, y, z, 0.0, 0.0, math.radians(robot.heading_deg)

@@ -8,16 +8,22 @@ polled. Which networks are used is told to Cyclone DDS by the environment: ROS_D
 from __future__ import annotations
 
 import dataclasses
+import os
 import re
 import time
 import types
 from collections.abc import Iterable
+from types import SimpleNamespace
 from typing import Any, Generic, TypeVar
 
-from muster.mission.errors import NetworkError, ParameterError
+from muster.mission.errors import NetworkError
 from muster.mission.system.extras import needs_extra
+from muster_robots.navigation import Navigator
+from muster_robots.ros2.dds_actions import DdsNavigator
+from muster_robots.ros2.dds_endpoints import Endpoint, Endpoints
 from muster_robots.ros2.description import ROS2, Field, Message, fields_of, from_foreign, to_foreign
-from muster_robots.ros2.middleware import KEPT, LATCHED, Navigator, domain_or_own, line_of
+from muster_robots.ros2.message_types import PoseStamped
+from muster_robots.ros2.middleware import KEPT, domain_or_own, is_latched, line_of
 
 M = TypeVar("M", bound=Message)
 
@@ -42,8 +48,9 @@ class DdsMiddleware:
             self._participant: Any = self._dds.participant(number)
         except self._dds.error as error:
             raise NetworkError(f"DDS domain {number}: {line_of(error)}; see CYCLONEDDS_URI") from None
-        self._publications = self._dds.publications(self._participant)
-        self._published: dict[Any, tuple[str, str]] = {}  # by the writers' keys
+        self.error = self._dds.error
+        self.publications = Endpoints(self._dds.publications(self._participant))
+        self.subscriptions = Endpoints(self._dds.subscriptions(self._participant))
 
     def writer(self, topic: str, message: type[M]) -> DdsWriter[M]:
         """See `Middleware`."""
@@ -51,25 +58,59 @@ class DdsMiddleware:
 
     def reader(self, topic: str, message: type[M], *, latched: bool = False) -> DdsReader[M]:
         """See `Middleware`."""
-        return DdsReader(self._dds, self._participant, topic, message, latched=latched or topic in LATCHED)
+        return DdsReader(self._dds, self._participant, topic, message, latched=latched or is_latched(topic))
 
-    def navigator(self, action: str) -> Navigator:
-        """Actions are calls, and every make of DDS has its own header for what ROS 2 calls."""
-        expected = "rclpy (--by rclpy), or goals as poses (--give goals)"
-        raise ParameterError(f"{action}: an action, by DDS; expected {expected}")
+    def navigator(self, action: str) -> Navigator[PoseStamped]:
+        """See `Middleware`."""
+        return DdsNavigator(self, action)
 
     def topics(self) -> Iterable[tuple[str, str]]:
         """See `Middleware`."""
-        while samples := self._publications.take(KEPT):
-            for sample in samples:
-                if sample.topic_name is None:  # its writer has ended
-                    self._published.pop(sample.key, None)
-                else:
-                    self._published[sample.key] = sample.topic_name, sample.type_name
-        for topic, kind in self._published.values():
-            name = _DDS_TYPE.fullmatch(kind)
-            if topic.startswith(_TOPICS) and name is not None:
-                yield topic.removeprefix(_TOPICS), f"{name[1]}/{name[2]}"
+        for endpoint in self.publications.all():
+            name = _DDS_TYPE.fullmatch(endpoint.kind)
+            if endpoint.topic.startswith(_TOPICS) and name is not None:
+                yield endpoint.topic.removeprefix(_TOPICS), f"{name[1]}/{name[2]}"
+
+    def client(
+        self, topics: tuple[str, str], messages: tuple[type[Message], type[Message]], theirs: tuple[Endpoint, Endpoint]
+    ) -> tuple[Any, Any] | None:
+        """Make the writer of requests and the reader of replies of a service.
+
+        Parameters
+        ----------
+        topics : tuple[str, str]
+            Of requests and replies, as in DDS.
+        messages : tuple[type, type]
+            Their types.
+        theirs : tuple[Endpoint, Endpoint]
+            A server's ends: where they tell their types, those are taken, so that both match.
+
+        Returns
+        -------
+        tuple or None
+            None while a type that they have is not known yet.
+        """
+        try:
+            kinds = [self._dds.kind_of(self._participant, *one) for one in zip(messages, theirs, strict=True)]
+            identity = f"clientid={os.urandom(16).hex('.')};".encode()  # by which the server knows both ends
+            return (
+                self._dds.writer(self._participant, topics[0], kinds[0], identity),
+                self._dds.reader(self._participant, topics[1], kinds[1], identity),
+            )
+        except self.error:
+            return None
+
+    def encoded(self, message: Message, kind: Any) -> Any:
+        """Return a message as a sample of the type that a writer has."""
+        sample = object.__new__(kind)
+        data = to_foreign(message, _idl).serialize()
+        sample.__dict__["serialize"] = lambda **_: data
+        return sample
+
+    def decoded(self, message: type[M], reader: Any) -> list[tuple[M, bytes]]:
+        """Return what a reader has received, as messages and as bytes."""
+        samples = reader.take(KEPT)
+        return [(from_foreign(message, _idl(message).deserialize(one.data)), one.data) for one in samples if one.data]
 
     def wait(self, seconds: float) -> None:
         """See `Middleware`: Cyclone DDS receives in threads of its own."""
@@ -77,7 +118,7 @@ class DdsMiddleware:
 
     def close(self) -> None:
         """See `Middleware`."""
-        self._participant = self._publications = None
+        self._participant = None
 
 
 class DdsWriter(Generic[M]):
@@ -124,6 +165,8 @@ class _Dds:
         self._hearing = qos.Qos(old, kept, policy.Reliability.BestEffort)
         lasting = (policy.Reliability.Reliable(10**8), policy.Durability.TransientLocal)
         self._hearing_latched = qos.Qos(old, kept, *lasting)
+        self._qos: Any = qos
+        self._calling = (old, kept, policy.Reliability.Reliable(10**8))
         self._topic: Any = topic.Topic
         self._writer: Any = pub.DataWriter
         self._reader: Any = sub.DataReader
@@ -131,18 +174,42 @@ class _Dds:
         self.participant: Any = domain.DomainParticipant
         self.error: Any = core.DDSException
 
-    def writer(self, participant: Any, topic: str, kind: Any) -> Any:
-        return self._writer(participant, self._topic(participant, topic, kind), qos=self._publishing)
+    def writer(self, participant: Any, topic: str, kind: Any, identity: bytes = b"") -> Any:
+        quality = self._service(identity) if identity else self._publishing
+        return self._writer(participant, self._topic(participant, topic, kind), qos=quality)
 
-    def reader(self, participant: Any, topic: str, kind: Any, *, latched: bool) -> Any:
+    def reader(self, participant: Any, topic: str, kind: Any, identity: bytes = b"", *, latched: bool = False) -> Any:
         quality = self._hearing_latched if latched else self._hearing
+        quality = self._service(identity) if identity else quality
         return self._reader(participant, self._topic(participant, topic, kind), qos=quality)
 
     def publications(self, participant: Any) -> Any:
         """The reader of what others publish, and how (DDS 1.4, 2.2.5: DCPSPublication)."""
         return self._builtin.BuiltinDataReader(participant, self._builtin.BuiltinTopicDcpsPublication)
 
+    def subscriptions(self, participant: Any) -> Any:
+        """The reader of what others subscribe to (DCPSSubscription)."""
+        return self._builtin.BuiltinDataReader(participant, self._builtin.BuiltinTopicDcpsSubscription)
 
+    def kind_of(self, participant: Any, message: type[Message], theirs: Endpoint) -> Any:
+        """Return the type of an end of a service, whose samples are bytes: theirs, where they tell it."""
+        from cyclonedds import dynamic, util
+
+        if theirs.type_id is None:
+            kind = _made(message)
+        else:
+            within: Any = util.duration(milliseconds=_TYPES_WITHIN_MS)
+            kind, _ = dynamic.get_types_for_typeid(participant, theirs.type_id, within)
+        kind.deserialize = classmethod(lambda cls, data, **_: SimpleNamespace(data=data))
+        kind.deserialize_key = classmethod(lambda cls, data, **_: SimpleNamespace(data=b""))
+        return kind
+
+    def _service(self, identity: bytes) -> Any:
+        return self._qos.Qos(*self._calling, self._qos.Policy.Userdata(identity))
+
+
+_TYPES_WITHIN_MS = 200
+"""For how long the types that a server of an action tells are waited for, before they are asked for anew."""
 _TOPICS = "rt"
 _DDS_TYPE = re.compile(r"(\w+)::msg::dds_::(\w+)_")
 
@@ -152,25 +219,28 @@ def _dds_topic(topic: str) -> str:
 
 
 def _dds_type(message: type[Message]) -> str:
-    package, _, name = message.NAME.partition("/")
-    return f"{package}::msg::dds_::{name}_"
+    package, *room, name = message.NAME.split("/")
+    return f"{package}::{room[0] if room else 'msg'}::dds_::{name}_"
 
 
 _MADE: dict[type[Message], Any] = {}
 
 
 def _idl(message: type[Message]) -> Any:
-    """The type of a message as cyclonedds has types, made from its description."""
+    """The type of a message as cyclonedds has types, made once from its description."""
     if message not in _MADE:
-        from cyclonedds.idl import IdlStruct
-
-        notes = {field.name: _idl_field(field) for field in fields_of(message, ROS2)}
-        body = {"__annotations__": notes, "__module__": __name__}
-        name = _dds_type(message)
-        how = {"typename": name}
-        made = types.new_class(name.rpartition("::")[2], (IdlStruct,), how, lambda room: room.update(body))
-        _MADE[message] = dataclasses.dataclass(made)
+        _MADE[message] = _made(message)
     return _MADE[message]
+
+
+def _made(message: type[Message]) -> Any:
+    from cyclonedds.idl import IdlStruct
+
+    notes = {field.name: _idl_field(field) for field in fields_of(message, ROS2)}
+    body = {"__annotations__": notes, "__module__": __name__}
+    name = _dds_type(message)
+    made = types.new_class(name.rpartition("::")[2], (IdlStruct,), {"typename": name}, lambda room: room.update(body))
+    return dataclasses.dataclass(made)
 
 
 def _idl_field(field: Field) -> Any:

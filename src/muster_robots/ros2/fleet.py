@@ -8,6 +8,7 @@ thread that calls `advance`.
 from __future__ import annotations
 
 import logging
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -17,16 +18,18 @@ from muster.mission.errors import NetworkError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.system.clock import Clock, SystemClock
 from muster.perception.robot_grids import RobotGrid
-from muster_robots.discovery import topics_in
+from muster_robots.discovery import pose_topics, topics_in
 from muster_robots.ros2.goals import Goals, Nav2Goals, PoseGoals
 from muster_robots.ros2.joining import Ros2Newcomers
-from muster_robots.ros2.map_frame import Ros2MapFrame
+from muster_robots.ros2.map_frame import MAP_FRAME, Ros2MapFrame
 from muster_robots.ros2.message_types import PoseStamped
 from muster_robots.ros2.middleware import Middleware
 from muster_robots.ros2.names import ros_names
 from muster_robots.ros2.open_middleware import open_middleware
 from muster_robots.ros2.port import Arrival, Ros2Port
 from muster_robots.ros2.robot_maps import Ros2Maps
+from muster_robots.ros2.simulator_clock import SimulatorClock
+from muster_robots.tied_frames import start_frame, start_pose
 
 if TYPE_CHECKING:
     from muster_robots.ros2.target_localization import Ros2TargetLocalization
@@ -55,6 +58,14 @@ class Ros2Fleet:
         in which the robots' own are; "" for the root.
     arrival
         when a way point is reached.
+    frame
+        the mission's frame, in tf's words.
+    odometry
+        `map`: tf ties it to the map; `start`: it begins at the robot's start in the mission.
+    poses
+        topic of a robot's pose, with `{robot}` for its name, where others publish it; empty: `<robot>/pose`.
+    use_sim_time
+        whether the mission goes by /clock.
     targets
         how tags that robots' cameras see are found; None: cameras are not heard.
     joins
@@ -74,22 +85,29 @@ class Ros2Fleet:
         give: Give = "goals",
         namespace: str = "",
         arrival: Arrival | None = None,
+        frame: str = MAP_FRAME,
+        odometry: Literal["map", "start"] = "map",
+        poses: str = "",
+        use_sim_time: bool = False,
         targets: SearchSettings | None = None,
         joins: bool = True,
         clock: Clock | None = None,
     ) -> None:
-        self._clock: Clock = clock or SystemClock()
-        self.simulated_time = clock is not None
-        self._begin = self._clock.now()
-        self._namespace, self._topics = namespace, topics_in(namespace)
+        self._namespace, self._topics, self._pose_topic = namespace, topics_in(namespace), pose_topics(poses)
         self._give, self._arrival = give, arrival or Arrival()
         self._flat = mission.dimensions == 2
         self._middleware = open_middleware() if middleware is None else middleware
-        self._frames = Ros2MapFrame(self._middleware)
+        self._simulator = SimulatorClock(self._middleware) if use_sim_time else None
+        self._clock: Clock = clock or self._simulator or SystemClock()
+        self.simulated_time = clock is not None or use_sim_time
+        self._begin = self._clock.now()
+        self._frames = Ros2MapFrame(self._middleware, frame)
         self._ports: dict[str, Ros2Port] = {}
         try:
             names = ros_names(robot.id for robot in mission.robots)
             for robot in mission.robots:
+                if odometry == "start":
+                    self._frames.fix(start_frame(self._topics(names[robot.id])), start_pose(robot))
                 self._ports[robot.id] = self._reached(robot, names[robot.id])
             self._targets = None if targets is None else self._searched(mission, names, targets)
         except BaseException:
@@ -110,17 +128,21 @@ class Ros2Fleet:
 
     def advance(self, until_s: float) -> Sequence[Event]:
         """See `Fleet`: returns before, where a way point is passed or a robot joins."""
+        real_until = time.monotonic() + until_s - self.time_s
         while True:
             self._middleware.wait(max(0.0, min(until_s - self.time_s, _POLL_S)))
-            self._frames.hear(self.time_s)
-            passed = [port.hear() for port in self._ports.values()]
+            passed = self._hear()
             events = [*self._joined(), *self._found()]
-            if events or any(passed) or self.time_s >= until_s:
+            stands = self._simulator is not None and time.monotonic() >= real_until  # the simulator's clock
+            if events or any(passed) or self.time_s >= until_s or stands:
                 return events
 
     def robots_not_ready(self) -> dict[str, str]:
         """Robots of the mission that cannot be sent anywhere yet, and what is missing, by what has come until now."""
-        self._hear_for(0.0)
+        self._middleware.wait(0.0)
+        self._hear()
+        if self._simulator is not None and not self._simulator.has_begun:
+            return dict.fromkeys(self._ports, "use_sim_time is set, and nothing is on /clock; expected a simulator")
         missing = {robot: port.missing or self._maps.missing(robot) for robot, port in self._ports.items()}
         return {name: why for name, why in missing.items() if why}
 
@@ -179,11 +201,12 @@ class Ros2Fleet:
         """See `Fleet`."""
         self._middleware.close()
 
-    def _hear_for(self, seconds: float) -> None:
-        self._middleware.wait(seconds)
+    def _hear(self) -> list[bool]:
+        """Take in what has come; returns of each robot whether it has passed a way point."""
         self._frames.hear(self.time_s)
-        for port in self._ports.values():
-            port.hear()
+        passed = [port.hear() for port in self._ports.values()]
+        self._frames.moved = []
+        return passed
 
     def _joined(self) -> list[Event]:
         found = [] if self._newcomers is None else self._newcomers.look(self.time_s)
@@ -215,12 +238,15 @@ class Ros2Fleet:
             flat=self._flat,
             clock=lambda: self.time_s,
             frames=self._frames,
+            pose_topic=self._pose_topic(name),
+            stamp=time.time if self._simulator is None else self._simulator.stamp,
         )
 
     def _goals(self, topics: str) -> Goals:
         if self._give == "nav2":
-            return Nav2Goals(self._middleware.navigator(f"{topics}/navigate_to_pose"))
-        return PoseGoals(self._middleware.writer(f"{topics}/goal_pose", PoseStamped))
+            action = f"{topics}/navigate_to_pose"
+            return Nav2Goals(self._middleware.navigator(action), action)
+        return PoseGoals(self._middleware.writer(f"{topics}/goal_pose", PoseStamped), f"{topics}/goal_pose")
 
     def _looks(self, names: Mapping[str, str]) -> Ros2Newcomers:
         def reach(robot: Robot) -> Ros2Port:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Literal, Protocol, TypeVar
 
 from muster.mission.errors import ParameterError
+from muster_robots.navigation import Navigator
 from muster_robots.ros2.description import Message
 from muster_robots.ros2.message_types import PoseStamped
 
@@ -15,8 +15,6 @@ M = TypeVar("M", bound=Message)
 Sent = TypeVar("Sent", bound=Message, contravariant=True)
 
 By = Literal["dds", "rclpy"]
-LATCHED = ("/tf_static",)
-"""Topics whose last messages those get too who listen later."""
 KEPT = 100
 """Messages that are kept until they are taken."""
 _LAST_DOMAIN = 232  # beyond it there are no ports
@@ -49,50 +47,6 @@ class Reader(Protocol[M]):
         ...
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """How a goal of navigation ended, and the detail that the robot gives."""
-
-    status: Literal["succeeded", "aborted", "canceled", "rejected"]
-    detail: str = ""
-
-
-class Navigation(Protocol):
-    """A goal that was given to a robot's own navigation."""
-
-    @property
-    def outcome(self) -> Outcome | None:
-        """None while it is under way."""
-        ...
-
-    def take(self) -> list[PoseStamped]:
-        """Where the robot said that it was, since the last call."""
-        ...
-
-    def cancel(self) -> None:
-        """Request that the goal is cancelled; `outcome` shows whether it was.
-
-        Raises
-        ------
-        NetworkError
-            if it cannot be asked.
-        """
-        ...
-
-
-class Navigator(Protocol):
-    """A client of an action `nav2_msgs/NavigateToPose`."""
-
-    @property
-    def ready(self) -> bool:
-        """Whether somebody serves it."""
-        ...
-
-    def go(self, goal: PoseStamped) -> Navigation:
-        """Let the robot go there; where that cannot even be asked, it is aborted."""
-        ...
-
-
 class Middleware(Protocol):
     """Takes part in a domain of ROS 2 until it is closed. What has come is to be had after `wait`."""
 
@@ -104,13 +58,13 @@ class Middleware(Protocol):
         """A subscriber of a topic; `latched`: of publishers alone that keep their last messages, and of these too."""
         ...
 
-    def navigator(self, action: str) -> Navigator:
+    def navigator(self, action: str) -> Navigator[PoseStamped]:
         """Who gives goals to an action (`/r_0/navigate_to_pose`).
 
         Raises
         ------
-        ParameterError, MissingExtraError
-            where this middleware has no actions, or Nav2's messages are not there.
+        MissingExtraError
+            where Nav2's messages are not there.
         """
         ...
 
@@ -125,6 +79,11 @@ class Middleware(Protocol):
     def close(self) -> None:
         """Leave; writers and readers end with it."""
         ...
+
+
+def is_latched(topic: str) -> bool:
+    """Whether those who listen later get a topic's last messages, too: `/tf_static`, and that of a robot."""
+    return topic.rpartition("/")[2] == "tf_static"
 
 
 def domain_or_own(domain: int | None) -> int:

@@ -2,10 +2,12 @@
 
 | topic | type | |
 |---|---|---|
-| `<robot>/pose` | PoseStamped | where it is; its navigation's feedback says so too |
-| `<robot>/odom` | Odometry | where it went from there, once poses have stopped; without any, where it is |
+| `<robot>/pose` | PoseStamped | where it is |
+| `<robot>/odom` | Odometry | where it is, or where it went since the last pose |
+| `<robot>/amcl_pose` | PoseWithCovarianceStamped | ties odometry to the map; its navigation's feedback does so too |
+| `/tf`, `<robot>/tf` | TFMessage | where its body is, if nothing else says so |
 
-A pose counts if its frame is tied to the map (`tied_frames`); odometry counts also if a pose that counts has tied it.
+Which of them counts `localisation` decides. In pose topics of others both types of poses count.
 """
 
 from __future__ import annotations
@@ -19,17 +21,28 @@ import numpy as np
 
 from muster.mission.model import Robot
 from muster.mission.values.ranges import require_positive
-from muster.motion.frames import angles, flu_to_enu, pose_of, pose_transform, quaternion_rotation
+from muster.motion.frames import Floats, angles, flu_to_enu, pose_of, pose_transform, quaternion_rotation
 from muster.motion.port import Place, Telemetry, Waypoint
 from muster_robots.follower import Follower
-from muster_robots.pose_port import goal_heading, require_finite, velocity_by
+from muster_robots.localisation import Localisation
+from muster_robots.pose_port import Attention, goal_heading, require_finite, velocity_by
 from muster_robots.ros2.goals import Goals
-from muster_robots.ros2.map_frame import MAP_FRAME
-from muster_robots.ros2.message_types import Header, Odometry, Point, Pose, PoseStamped, Quaternion, Time
+from muster_robots.ros2.map_frame import MAP_FRAME, RobotFrames
+from muster_robots.ros2.message_types import (
+    Header,
+    Odometry,
+    Point,
+    Pose,
+    PoseStamped,
+    PoseWithCovarianceStamped,
+    Quaternion,
+    Time,
+    Vector3,
+)
 from muster_robots.ros2.middleware import Middleware
-from muster_robots.ros2.odometry_tracking import OdometryTracking
 from muster_robots.tied_frames import TiedFrames
 
+_OTHERS = ("odom", "amcl_pose")
 _FRESH_S = 0.5
 """Who said for longer not where it is, is elsewhere by now: that place is none to stay at."""
 
@@ -66,6 +79,10 @@ class Ros2Port:
         seconds of the mission's.
     frames
         which frames are tied to the map; None: the map's alone.
+    pose_topic
+        where its pose is published, if not on `<robot>/pose`: by a motion capture system.
+    stamp
+        seconds of ROS' time, for the stamps of goals.
     """
 
     def __init__(
@@ -79,16 +96,24 @@ class Ros2Port:
         flat: bool,
         clock: Callable[[], float],
         frames: TiedFrames | None = None,
+        pose_topic: str | None = None,
+        stamp: Callable[[], float] = time.time,
     ) -> None:
         self.body, self.topics, self.goals, self._flat, self._clock = robot, topics, goals, flat, clock
+        self._stamp = stamp
         near = {"arrival_m": arrival.near_m, "turned_rad": arrival.turned_rad}
         self._follower = Follower(**near, flat=flat or robot.kind == "ground")
-        self._poses = middleware.reader(f"{topics}/pose", PoseStamped)
-        self._odometry = middleware.reader(f"{topics}/odom", Odometry)
+        self._where = {"pose": pose_topic or f"{topics}/pose"} | {name: f"{topics}/{name}" for name in _OTHERS}
+        self._poses = middleware.reader(self._where["pose"], PoseStamped)
+        self._unsure = {
+            name: middleware.reader(self._where[name], PoseWithCovarianceStamped) for name in ("pose", "amcl_pose")
+        }
+        self._odometry = middleware.reader(self._where["odom"], Odometry)
         self._said: Telemetry | None = None
-        self._odometry_tracking = OdometryTracking()
-        self._frames = TiedFrames(MAP_FRAME) if frames is None else frames
-        self._untied = ""  # a frame in which poses are given that nothing ties to the map
+        shared = TiedFrames(MAP_FRAME) if frames is None else frames
+        self._frames = RobotFrames(middleware, topics, shared)
+        self._localisation = Localisation(self._frames)
+        self._attention = Attention(robot.id, goals.expected, lambda: goals.ready)
         self._withheld = False  # whether a goal waits for that
         self._height = 0.0
         self._refused = ""
@@ -100,12 +125,10 @@ class Ros2Port:
 
     @property
     def missing(self) -> str:
-        """What is not there of what it needs; empty if all is."""
-        if self._said is None and self._untied:
-            return self._frames.untied(self._untied)
+        """What is missing of what it takes to drive it, and what is expected; empty if nothing is."""
         if self._said is None:
-            return f"nothing on {self.topics}/pose or {self.topics}/odom"
-        return "" if self.goals.ready else f"no server of {self.topics}/navigate_to_pose"
+            return self._localisation.untied or f"nothing on {' or '.join(self._where.values())}"
+        return self.goals.unfit or self._attention.missing
 
     @property
     def at_rest(self) -> bool:
@@ -136,7 +159,7 @@ class Ros2Port:
 
     def telemetry(self) -> Telemetry | None:
         """See `RobotPort`."""
-        return self._said
+        return self._attention.judged(self._said)
 
     def hear(self) -> bool:
         """Take in what has come, and give the next goal where one is reached; returns whether one was passed."""
@@ -167,43 +190,38 @@ class Ros2Port:
 
     def _take_in(self, now: float) -> bool:
         """Where it has said that it is; returns whether it has passed a way point with that."""
+        moved = self._frames.bodies(now)
         passed = [self._take_odometry(odometry, now) for odometry in self._odometry.take()]
-        passed += [self._take_pose(pose, now) for pose in (*self._poses.take(), *self.goals.poses())]
+        where, fixes = self._where["pose"], self._where["amcl_pose"]
+        pose, fix = self._localisation.pose, self._localisation.fix
+        found = [(pose, where, said.header, said.pose) for said in self._poses.take()]
+        found += [(pose, where, said.header, said.pose.pose) for said in self._unsure["pose"].take()]
+        found += [(fix, fixes, said.header, said.pose.pose) for said in self._unsure["amcl_pose"].take()]
+        found += [(fix, self.goals.feedback, said.header, said.pose) for said in self.goals.poses()]
+        for judge, topic, header, told in found:
+            matrix = _matrix(told)
+            if matrix is not None:
+                passed.append(self._count(judge(now, topic, header.frame_id, matrix), now))
+        passed += [self._count(self._localisation.body(now, *body), now) for body in moved]
         return any(passed)
-
-    def _take_pose(self, pose: PoseStamped, now: float) -> bool:
-        found = self._on_map(pose.header, pose.pose)
-        if found is None:
-            return False
-        self._odometry_tracking.tie(now, *found)
-        return self._is_at(*found, now, None)
 
     def _take_odometry(self, odometry: Odometry, now: float) -> bool:
         """Who is localised does not go by odometry, as long as that lasts."""
-        found = _place_and_heading(odometry.pose.pose)
-        if found is None:
+        matrix = _matrix(odometry.pose.pose)
+        if matrix is None:
             return False
-        there = self._odometry_tracking.reckon(now, *found)
-        if not self._odometry_tracking.is_tied:
-            there = self._on_map(odometry.header, odometry.pose.pose)
+        there = self._localisation.odometry(now, self._where["odom"], odometry.header.frame_id, matrix)
+        return self._count(there, now, odometry.twist.twist.linear)
+
+    def _count(self, there: Floats | None, now: float, ahead: Vector3 | None = None) -> bool:
+        """Take in a pose on the map, with the body's velocity where that is said."""
         if there is None:
             return False
-        linear = odometry.twist.twist.linear
-        x, y, z = flu_to_enu([linear.x, linear.y, linear.z], there[1]).tolist()
-        return self._is_at(*there, now, (x, y, z))
-
-    def _on_map(self, header: Header, pose: Pose) -> tuple[Place, float] | None:
-        """Return place and heading on the map; None if they are no numbers, or nothing ties their frame to the map."""
-        found = _place_and_heading(pose)
-        if found is None:
-            return None
-        place, heading = found
-        matrix = self._frames.to_map(header.frame_id, pose_transform((*place, 0.0, 0.0, heading)))
-        self._untied = header.frame_id if matrix is None else ""
-        if matrix is None:
-            return None
-        x, y, z, _, _, turned = map(float, pose_of(matrix))
-        return (x, y, z), turned
+        x, y, z, _, _, heading = map(float, pose_of(there))
+        if ahead is None:
+            return self._is_at((x, y, z), heading, now, None)
+        east, north, up = flu_to_enu([ahead.x, ahead.y, ahead.z], heading).tolist()
+        return self._is_at((x, y, z), heading, now, (east, north, up))
 
     def _is_at(self, place: Place, heading: float, now: float, velocity: Place | None) -> bool:
         """It is there; returns whether it has passed a way point with that."""
@@ -222,7 +240,7 @@ class Ros2Port:
         A robot that says where it is in a frame that is not tied to the map gets none until it is tied.
         """
         aim = self._follower.aim
-        self._withheld = self._said is None and bool(self._untied)
+        self._withheld = self._said is None and bool(self._localisation.untied)
         if aim is None or self._withheld:
             return
         self.goals.give(self._stamped(aim.position, goal_heading(aim, self._said)))
@@ -230,14 +248,14 @@ class Ros2Port:
     def _stamped(self, place: Place, heading: float) -> PoseStamped:
         x, y, z = map(float, place)
         turn = Quaternion(0.0, 0.0, math.sin(heading / 2), math.cos(heading / 2))
-        header = Header(stamp=Time.of(time.time()), frame_id=MAP_FRAME)
+        header = Header(stamp=Time.of(self._stamp()), frame_id=self._frames.name)
         return PoseStamped(header, Pose(Point(x, y, self._height if self._flat else z), turn))
 
 
-def _place_and_heading(pose: Pose) -> tuple[Place, float] | None:
-    """Metres and radians; None where they are no numbers."""
+def _matrix(pose: Pose) -> Floats | None:
+    """A level pose (4, 4); None where it is no numbers."""
     place, heading = (pose.position.x, pose.position.y, pose.position.z), yaw_of(pose.orientation)
-    return (place, heading) if all(map(math.isfinite, (*place, heading))) else None
+    return pose_transform((*place, 0.0, 0.0, heading)) if all(map(math.isfinite, (*place, heading))) else None
 
 
 def yaw_of(turn: Quaternion) -> float:

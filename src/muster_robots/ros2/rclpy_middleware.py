@@ -14,9 +14,10 @@ from contextlib import contextmanager
 from typing import Any, Generic, TypeVar
 
 from muster.mission.errors import MissingExtraError, NetworkError
+from muster_robots.navigation import Navigation, Outcome
 from muster_robots.ros2.description import Message, from_foreign, to_foreign
 from muster_robots.ros2.message_types import PoseStamped
-from muster_robots.ros2.middleware import KEPT, LATCHED, Navigation, Outcome, domain_or_own, line_of
+from muster_robots.ros2.middleware import KEPT, domain_or_own, is_latched, line_of
 
 M = TypeVar("M", bound=Message)
 _LEAST_S = 0.005
@@ -64,7 +65,7 @@ class RclpyMiddleware:
     def reader(self, topic: str, message: type[M], *, latched: bool = False) -> RclpyReader[M]:
         """See `Middleware`."""
         reader = RclpyReader(message)
-        quality = self._latched if latched or topic in LATCHED else self._any
+        quality = self._latched if latched or is_latched(topic) else self._any
         self._node.create_subscription(_class_of(message), topic, reader.hear, quality)
         return reader
 
@@ -128,7 +129,9 @@ class RclpyReader(Generic[M]):
 
 
 class RclpyNavigator:
-    """See `middleware.Navigator`."""
+    """See `navigation.Navigator`."""
+
+    unfit = ""
 
     def __init__(self, client: Any, kind: Any) -> None:
         self._client, self._kind = client, kind
@@ -137,7 +140,7 @@ class RclpyNavigator:
     def ready(self) -> bool:
         return bool(self._client.server_is_ready())
 
-    def go(self, goal: PoseStamped) -> Navigation:
+    def go(self, goal: PoseStamped) -> Navigation[PoseStamped]:
         """Ask Nav2 to go there, by the behaviour tree that it has by default."""
         theirs = self._kind.Goal()
         theirs.pose = to_foreign(goal, _class_of)
@@ -145,7 +148,7 @@ class RclpyNavigator:
 
 
 class _Navigation:
-    """See `middleware.Navigation`: two answers are awaited, that the goal is accepted and how it ended."""
+    """See `navigation.Navigation`: two answers are awaited, that the goal is accepted and how it ended."""
 
     def __init__(self, client: Any, goal: Any) -> None:
         self.outcome: Outcome | None = None

@@ -21,11 +21,11 @@ TEAM = tuple(Robot(id=f"r_{k}", position=(float(k), 0.0)) for k in range(3))
 class Port:
     """Of a robot that is not there."""
 
-    broken = ""  # whose network fails
+    broken = missing = ""  # whose network fails; what is not there
     steerable = True
 
     def __init__(self, robot, topics, **_):
-        self.body, self.robot, self.untied, self.told = robot, robot.id, "", []
+        self.body, self.robot, self.told = robot, robot.id, []
 
     def cancel(self):
         self._tell("cancel")
@@ -153,7 +153,13 @@ def hear(rospy_there, monkeypatch):
     return said
 
 
-FRAME = SimpleNamespace(name="map", to_map=lambda name, matrix: None if name == "lost" else matrix)
+def to_map(name, matrix):
+    return None if name == "lost" else matrix
+
+
+FRAME = SimpleNamespace(
+    name="map", to_map=to_map, watch=lambda *_: None, untied=lambda topic, frame: f"{topic} is in frame {frame}"
+)
 
 
 def test_who_is_localised_goes_by_odometry_until_such_a_pose_counts(hear, monkeypatch):
@@ -177,22 +183,74 @@ def test_who_is_localised_goes_by_odometry_until_such_a_pose_counts(hear, monkey
     assert robot.odometer.metres == pytest.approx(8.0)
 
 
+class Told(list):
+    """Places of goals, or velocities, and how many listen."""
+
+    listeners = 1
+
+
 @pytest.fixture
 def port_of(hear, monkeypatch):
     """A port by its drive, and what it says: places of goals, or velocities."""
-    from muster_robots.ros1 import port
+    from muster_robots.ros1 import orders, port
     from muster_robots.ros1.clock import MissionClock
 
     def of(drive):
-        told = []
-        publisher = SimpleNamespace(publish=told.append)
-        monkeypatch.setattr(port.rospy, "Publisher", lambda *_, **__: publisher)
-        monkeypatch.setattr(port, "pose_stamped", lambda _, place, __: place[:2])
-        monkeypatch.setattr(port, "twist_of", lambda velocity: velocity)
+        told = Told()
+        publisher = SimpleNamespace(publish=told.append, get_num_connections=lambda: told.listeners)
+        monkeypatch.setattr(orders.rospy, "Publisher", lambda *_, **__: publisher)
+        monkeypatch.setattr(orders, "pose_stamped", lambda _, place, __: place[:2])
+        monkeypatch.setattr(orders, "twist_of", lambda velocity: velocity)
         own = {"frame": FRAME, "flat": True, "arrival_m": 0.1, "lock": threading.RLock(), "on_pass": lambda: None}
         return port.Ros1Port(TEAM[0], "/r_0", drive=drive, clock=MissionClock(), **own), told
 
     return of
+
+
+def test_who_has_a_pose_that_counts_for_nothing_is_missing_that(port_of, hear):
+    port, _ = port_of("cmd_vel")
+    assert port.missing == "nothing on /r_0/odom or /r_0/pose or /r_0/amcl_pose"
+    hear["/r_0/odom"](1.0, "lost")
+    assert port.missing == "/r_0/odom is in frame lost"
+    hear["/r_0/odom"](1.0)
+    assert port.missing == ""
+
+
+@pytest.mark.parametrize(
+    ("drive", "topic"),
+    [
+        ("cmd_vel", "cmd_vel (geometry_msgs/Twist)"),
+        ("goals", "WP (geometry_msgs/PoseStamped)"),
+        ("move_base_simple", "move_base_simple/goal (geometry_msgs/PoseStamped)"),
+    ],
+)
+def test_whose_orders_nobody_receives_counts_as_silent_until_somebody_does(port_of, hear, caplog, drive, topic):
+    port, told = port_of(drive)
+    hear["/r_0/odom"](0.0)
+    assert port.missing == ""
+    told.listeners = 0
+    lost_s = port.telemetry().time_s
+    hear["/r_0/odom"](1.0)
+    said = port.telemetry()
+    assert said.time_s == lost_s  # its time stands still
+    assert said.position[0] == 1.0  # its place does not
+    missing = f"nobody receives its orders; expected a subscriber of /r_0/{topic}"
+    assert port.missing == missing
+    assert [record.getMessage() for record in caplog.records] == [f"robot r_0: {missing}; it counts as silent"]
+    told.listeners = 1
+    assert port.telemetry().time_s > lost_s
+
+
+def test_simple_goals_are_said_when_they_change_and_not_again(port_of, hear):
+    port, told = port_of("move_base_simple")
+    hear["/r_0/odom"](0.0)
+    port.send([Waypoint((1.0, 0.0, 0.0)), Waypoint((1.0, 2.0, 0.0))])
+    for _ in range(3):
+        port.speak(port.steered(within_s=9, paused=False), STILL)
+    hear["/r_0/odom"](1.0)
+    for _ in range(3):
+        port.speak(port.steered(within_s=9, paused=False), STILL)
+    assert told == [(1.0, 0.0), (1.0, 2.0)]
 
 
 @pytest.mark.parametrize("drive", ["cmd_vel", "goals"])

@@ -188,7 +188,8 @@ def test_robots_that_nobody_commands_are_told_nothing(own_ros, tmp_path):
     carried = own_ros.muster("m.yaml", "--wait", "2")
     out, err = carried.communicate(timeout=30)
     assert (carried.returncode, out) == (2, "")
-    said = "robot r_1: its poses are in frame lost, which tf does not tie to map within 2 s; expected its pose\n"
+    expected = "tf from map to lost, or a pose in map, or --odometry start"
+    said = f"robot r_1: /r_1/odom is in frame lost, which tf does not tie to map within 2 s; expected {expected}\n"
     assert own_words(err) == said
     heard = listener.heard()
     met = {one["child_frame_id"] for topic, data in heard if topic == "/tf" for one in data["transforms"]}

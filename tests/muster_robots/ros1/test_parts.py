@@ -17,7 +17,8 @@ from muster.motion.kinematics.registry import KINEMATICS
 from muster.motion.port import Waypoint
 from muster_robots.discovery import robots_in
 from muster_robots.follower import Follower
-from muster_robots.ros1.clock import Forward, MissionClock
+from muster_robots.ros1.clock import MissionClock
+from muster_robots.simulated_time import Forward
 from muster_robots.steering import STILL, SteeredRobot, Steering
 
 DT = 0.05

@@ -3,6 +3,7 @@
 import math
 
 from muster.mission.errors import NetworkError
+from muster_robots.navigation import Outcome
 from muster_robots.ros2.message_types import (
     Header,
     Odometry,
@@ -15,7 +16,6 @@ from muster_robots.ros2.message_types import (
     TwistWithCovariance,
     Vector3,
 )
-from muster_robots.ros2.middleware import Outcome
 
 
 class Heard(list):
@@ -61,6 +61,7 @@ class Navigation(Heard):
 
 class Navigator:
     ready = True
+    unfit = ""
 
     def __init__(self):
         self.given = []

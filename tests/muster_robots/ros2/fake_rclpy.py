@@ -233,6 +233,7 @@ class Nav2:
         context = Context()
         context.init(args=[], domain_id=0)
         node, best = Node(name, context=context), QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        node.create_subscription(MODULES["geometry_msgs.msg"].PoseStamped, f"/{name}/goal_pose", lambda _: None, best)
         if says:
             self._said = node.create_publisher(MODULES["geometry_msgs.msg"].PoseStamped, f"/{name}/{says}", best)
         graph.servers[f"/{name}/navigate_to_pose"] = self

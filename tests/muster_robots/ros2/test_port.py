@@ -8,10 +8,10 @@ from tests.muster_robots.ros2.fake_middleware import Middleware, Navigator, Told
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.port import Waypoint
+from muster_robots.navigation import Outcome
 from muster_robots.ros2.goals import Nav2Goals, PoseGoals
 from muster_robots.ros2.map_frame import Ros2MapFrame
 from muster_robots.ros2.message_types import Header, Quaternion, TFMessage, Time, Transform, TransformStamped, Vector3
-from muster_robots.ros2.middleware import Outcome
 from muster_robots.ros2.port import Arrival, Ros2Port, yaw_of
 
 
@@ -35,7 +35,7 @@ def navigator():
 
 
 def test_nav2_with_odometry_only_is_heard_after_its_goal_and_holds_to_the_end(navigator):
-    robot = There(Nav2Goals(navigator))
+    robot = There(Nav2Goals(navigator, "/r/navigate_to_pose"))
     robot.odometry.append(moved(0.0, frame="map"))
     robot.hear(0.0)
     robot.port.send([Waypoint((5.0, 0.0, 0.0), hold_s=8.0), Waypoint((5.0, 5.0, 0.0))])
@@ -52,7 +52,7 @@ def test_nav2_with_odometry_only_is_heard_after_its_goal_and_holds_to_the_end(na
 
 
 def test_a_hold_ends_by_time_where_nothing_is_heard_and_times_stand_still(navigator):
-    robot = There(Nav2Goals(navigator))
+    robot = There(Nav2Goals(navigator, "/r/navigate_to_pose"))
     robot.odometry.append(moved(5.0, frame="map"))
     robot.hear(0.0)
     robot.port.send([Waypoint((5.0, 0.0, 0.0), hold_s=2.0)])
@@ -65,7 +65,7 @@ def test_a_hold_ends_by_time_where_nothing_is_heard_and_times_stand_still(naviga
 
 
 def test_where_poses_stop_odometry_goes_on_from_the_last(navigator):
-    robot = There(Nav2Goals(navigator))
+    robot = There(Nav2Goals(navigator, "/r/navigate_to_pose"))
     robot.odometry.append(moved(10.0, 0.0, 0.0))
     robot.poses.append(posed(1.0, 2.0, math.pi / 2))
     robot.hear(0.0)
@@ -84,7 +84,7 @@ def test_where_poses_stop_odometry_goes_on_from_the_last(navigator):
 
 
 def test_odometry_that_begins_after_the_pose_is_tied_to_it(navigator):
-    robot = There(Nav2Goals(navigator))
+    robot = There(Nav2Goals(navigator, "/r/navigate_to_pose"))
     robot.poses.append(posed(1.0, 2.0))
     robot.hear(0.0)
     robot.odometry.append(moved(0.0))
@@ -95,12 +95,13 @@ def test_odometry_that_begins_after_the_pose_is_tied_to_it(navigator):
 
 
 def test_poses_in_other_frames_and_such_as_are_none_do_not_count():
-    robot = There(PoseGoals(Told()))
+    robot = There(PoseGoals(Told(), "/r/goal_pose"))
     robot.poses += [posed(9.0, frame="odom"), posed(math.nan)]
     robot.odometry += [moved(math.inf), moved(3.0)]
     robot.hear(0.0)
     assert robot.port.telemetry() is None
-    assert robot.port.missing == "its poses are in frame odom, which tf does not tie to map"
+    expected = "tf from map to odom, or a pose in map"
+    assert robot.port.missing == f"/r/pose is in frame odom, which tf does not tie to map; expected {expected}"
     robot.odometry.append(moved(3.0, frame="map"))
     robot.hear(0.1)
     assert robot.port.telemetry().position == (3.0, 0.0, 0.0)
@@ -109,7 +110,7 @@ def test_poses_in_other_frames_and_such_as_are_none_do_not_count():
 
 def test_a_robot_whose_place_on_the_map_is_not_known_is_sent_nowhere():
     told = Told()
-    robot = There(PoseGoals(told))
+    robot = There(PoseGoals(told, "/r/goal_pose"))
     robot.odometry.append(moved(0.0))
     robot.hear(0.0)
     robot.port.send([Waypoint((5.0, 0.0, 0.0))])
@@ -125,7 +126,9 @@ def test_odometry_counts_where_tf_ties_its_frame_to_the_map():
     middleware = Middleware()
     frames = Ros2MapFrame(middleware)
     there = {"clock": middleware.now, "flat": True, "frames": frames}
-    port = Ros2Port(Robot(id="r", position=(0.0, 0.0)), middleware, "/r", PoseGoals(Told()), Arrival(), **there)
+    port = Ros2Port(
+        Robot(id="r", position=(0.0, 0.0)), middleware, "/r", PoseGoals(Told(), "/r/goal_pose"), Arrival(), **there
+    )
     middleware.heard["/r/odom"].append(moved(3.0, frame="r/odom"))
     frames.hear(0.0)
     port.hear()
@@ -149,7 +152,7 @@ def tied(parent, child, x, y, turn):
 
 def test_who_is_cancelled_stays_where_it_said_last_that_it_is():
     told = Told()
-    robot = There(PoseGoals(told))
+    robot = There(PoseGoals(told, "/r/goal_pose"))
     robot.poses.append(posed(0.0))
     robot.hear(0.0)
     robot.port.send([Waypoint((50.0, 0.0, 0.0))])
@@ -163,7 +166,7 @@ def test_who_is_cancelled_stays_where_it_said_last_that_it_is():
 
 def test_who_is_silent_keeps_its_goal_until_it_is_heard():
     told = Told()
-    robot = There(PoseGoals(told))
+    robot = There(PoseGoals(told, "/r/goal_pose"))
     robot.poses.append(posed(1.0))
     robot.hear(0.0)
     robot.port.send([Waypoint((50.0, 0.0, 0.0))])
@@ -182,7 +185,7 @@ def test_who_is_silent_keeps_its_goal_until_it_is_heard():
 
 def test_what_is_sent_to_a_silent_robot_holds_when_it_is_heard():
     told = Told()
-    robot = There(PoseGoals(told))
+    robot = There(PoseGoals(told, "/r/goal_pose"))
     robot.port.cancel()
     robot.port.send([Waypoint((50.0, 0.0, 0.0))])
     robot.poses.append(posed(6.0))
@@ -191,7 +194,7 @@ def test_what_is_sent_to_a_silent_robot_holds_when_it_is_heard():
 
 
 def test_nav2_cancels_without_a_pose(navigator):
-    robot = There(Nav2Goals(navigator))
+    robot = There(Nav2Goals(navigator, "/r/navigate_to_pose"))
     robot.port.send([Waypoint((50.0, 0.0, 0.0))])
     robot.port.cancel()
     robot.hear(1.0)
@@ -200,7 +203,7 @@ def test_nav2_cancels_without_a_pose(navigator):
 
 
 def test_the_velocity_is_that_between_poses():
-    robot = There(PoseGoals(Told()))
+    robot = There(PoseGoals(Told(), "/r/goal_pose"))
     robot.poses.append(posed(0.0))
     robot.hear(0.0)
     assert robot.port.telemetry().velocity == (0.0, 0.0, 0.0)
@@ -221,7 +224,7 @@ def test_the_velocity_is_that_between_poses():
     ],
 )
 def test_a_goal_has_the_heading_of_the_way_there_if_none_is_wanted(navigator, waypoint, wanted):
-    robot = There(Nav2Goals(navigator))
+    robot = There(Nav2Goals(navigator, "/r/navigate_to_pose"))
     robot.poses.append(posed(0.0, 0.0, -2.0))
     robot.hear(0.0)
     robot.port.send([waypoint])
@@ -230,7 +233,7 @@ def test_a_goal_has_the_heading_of_the_way_there_if_none_is_wanted(navigator, wa
 
 def test_way_points_that_are_none_are_not_sent():
     told = Told()
-    robot = There(PoseGoals(told))
+    robot = There(PoseGoals(told, "/r/goal_pose"))
     with pytest.raises(ParameterError, match=r"^way point of r: .*expected finite numbers$"):
         robot.port.send([Waypoint((math.nan, 0.0, 0.0))])
     assert told == []

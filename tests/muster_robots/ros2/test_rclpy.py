@@ -196,7 +196,8 @@ def test_where_nav2_ends_the_goal_waits_for_another(graph):
     fleet.advance(fleet.time_s + 0.1)
     del graph.servers["/r_0/navigate_to_pose"], graph.robots[0]
     fleet.advance(fleet.time_s + 0.1)
-    assert fleet.robots_not_ready() == {"r_0": "no server of /r_0/navigate_to_pose"}
+    expected = "an action server of /r_0/navigate_to_pose (nav2_msgs/NavigateToPose)"
+    assert fleet.robots_not_ready() == {"r_0": f"nobody receives its orders; expected {expected}"}
     fake_rclpy.Nav2(graph, "r_0", (0.0, 0.0))
     until(fleet, lambda: fleet.ports["r_0"].telemetry().passed == 1)
 

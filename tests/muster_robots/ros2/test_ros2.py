@@ -178,14 +178,15 @@ def test_what_is_missing_is_one_line(start, mission):
     carried = start("-m", "muster.cli", "ros2", mission, *QUICK, "--wait", "0.3")
     out, err = carried.communicate(timeout=20)
     assert (carried.returncode, out) == (2, "")
-    assert err == "robot r_0: nothing on /r_0/pose or /r_0/odom within 0.3 s (and 1 more); expected its pose\n"
+    nothing = "nothing on /r_0/pose or /r_0/odom or /r_0/amcl_pose"
+    assert err == f"robot r_0: {nothing} within 0.3 s (and 1 more); expected its pose\n"
 
 
 @pytest.mark.parametrize(
     ("options", "said"),
     [
         (("--domain", "300"), "domain: 300; expected a whole number of at least 0, at most 232"),
-        (("--give", "nav2"), "/r_0/navigate_to_pose: an action, by DDS; expected rclpy (--by rclpy), or goals as"),
+        (("--profile", "move_base"), 'profile: "move_base"; expected nav2 or amcl or mocap'),
     ],
 )
 def test_bad_options_are_one_line(mission, options, said, capsys):
@@ -221,7 +222,8 @@ def test_without_nav2_it_says_so(mission, monkeypatch, capsys):
     fake_rclpy.Nav2(graph, "r_1", (0.0, 3.0))
     del graph.servers["/r_1/navigate_to_pose"]
     assert run(["ros2", mission, "--give", "nav2", "--wait", "0.2"]) == 2
-    said = "robot r-1: no server of /r_1/navigate_to_pose within 0.2 s; expected its pose, and Nav2\n"
+    expected = "an action server of /r_1/navigate_to_pose (nav2_msgs/NavigateToPose)"
+    said = f"robot r-1: nobody receives its orders within 0.2 s; expected {expected}\n"
     assert capsys.readouterr().err == said
 
 
@@ -250,12 +252,15 @@ def odometry(loopback):
     robots.close()
 
 
-def test_robots_in_a_frame_that_nothing_ties_to_the_map_are_refused_and_sent_nowhere(odometry, mission, capsys):
+def test_robots_in_a_frame_that_nothing_ties_to_the_map_are_refused_and_sent_nowhere(odometry, mission, capsys, caplog):
     says, goals = odometry
     says += [("r_0", "map", None), ("r_1", "r_1/odom", None)]
     assert run(["ros2", mission, *QUICK, "--wait", "2"]) == 2
-    said = "robot r-1: its poses are in frame r_1/odom, which tf does not tie to map within 2 s; expected its pose\n"
-    assert capsys.readouterr().err == said
+    where = "robot r-1: /r_1/odom is in frame r_1/odom, which tf does not tie to map"
+    expected = "tf from map to r_1/odom, or a pose in map, or --odometry start"
+    assert capsys.readouterr().err == f"{where} within 2 s; expected {expected}\n"
+    (named,) = [record.getMessage() for record in caplog.records if record.name == "muster.running.live"]
+    assert named == f"{where}; expected {expected}; it is waited for up to 2 s"
     assert [reader.take() for reader in goals.values()] == [[], []]
 
 
