@@ -361,13 +361,8 @@ class Session:
         """Items reached: one that is lost is made up for by the next, and one that is repeated changes nothing."""
         unheard = self._unheard
         flown: Drone | UnheardOrder = self.drone if unheard is None or self.drone.route is not None else unheard
-        if flown.route is None:
-            return
-        if message.get_type() == "MISSION_ITEM_REACHED":
-            flown.passed = max(flown.passed, flown.route.passed(message.seq))
-        elif message.get_type() == "MISSION_CURRENT":
-            over = message.mission_state == mavlink.MISSION_STATE_COMPLETE
-            flown.passed = max(flown.passed, flown.route.passed(len(flown.route.items) if over else message.seq - 1))
+        if flown.route is not None:
+            flown.passed = max(flown.passed, flown.route.passed_by(message))
 
     def _go_on(self, now: float) -> None:
         if self._requests is not None and now <= self.drone.telemetry.heard_s + _ANSWERS_S:
