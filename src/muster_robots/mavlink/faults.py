@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import Enum
 
+from muster_robots.custody import Standing
+
 TEXTS_BEFORE_S, _TEXTS_AFTER_S = 5.0, 0.5
 """Seconds before and after a fault in which status texts of the autopilot may give its cause."""
 _TOLD = 3
@@ -62,6 +64,10 @@ class Kind(Enum):
             Kind.COMMAND_REFUSED,
             Kind.NO_ANSWER,
         )
+
+
+KIND_UNDER = {Standing.PILOT: Kind.PILOT, Standing.FAILSAFE: Kind.FAILSAFE, Standing.STATION: Kind.STATION}
+"""The fault of a drone that somebody else has, by its standing."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from muster.motion.frames import yaw_enu_to_ned
 from muster.motion.port import Place, Waypoint
 from muster_robots.mavlink.autopilots import Autopilot
-from muster_robots.mavlink.dialect import mavlink
+from muster_robots.mavlink.dialect import Message, mavlink
 from muster_robots.mavlink.frames import GlobalFrame
 
 RELATIVE = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
@@ -48,6 +48,15 @@ class Route:
     def passed(self, reached: int) -> int:
         """How many way points are passed when an item is, and with it all before."""
         return max((count for seq, count in self.passed_with.items() if seq <= reached), default=0)
+
+    def passed_by(self, message: Message) -> int:
+        """How many way points are passed by what a message says; 0 if it says nothing of that."""
+        if message.get_type() == "MISSION_ITEM_REACHED":
+            return self.passed(message.seq)
+        if message.get_type() != "MISSION_CURRENT":
+            return 0
+        over = message.mission_state == mavlink.MISSION_STATE_COMPLETE
+        return self.passed(len(self.items) if over else message.seq - 1)
 
 
 def route_of(

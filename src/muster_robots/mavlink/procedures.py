@@ -17,6 +17,9 @@ from muster_robots.mavlink.requests import Request, Script, pause
 
 _AGAIN = 3
 """How often a command is given that is refused for the moment."""
+_TELEMETRY = (30, 32, 33, 147, 1, 42, 162, 245)
+"""ATTITUDE, the two places, the two of the battery, MISSION_CURRENT, fence, EXTENDED_SYS_STATE."""
+_TELEMETRY_US = 100_000
 _NO_REFUSAL = (mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_IN_PROGRESS)
 
 
@@ -24,6 +27,11 @@ def command(target: Message, number: int, *params: float) -> Message:
     """COMMAND_LONG to the sender of a heartbeat; parameters that are not given are 0."""
     seven = (*params, *(0.0,) * (7 - len(params)))
     return mavlink.MAVLink_command_long_message(target.get_srcSystem(), target.get_srcComponent(), number, 0, *seven)
+
+
+def telemetry_requests(target: Message) -> list[Message]:
+    """The commands by which a drone sends what Muster reads, 10 times a second."""
+    return [command(target, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, _TELEMETRY_US) for number in _TELEMETRY]
 
 
 def obeyed(

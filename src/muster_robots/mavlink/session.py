@@ -15,18 +15,24 @@ from muster_robots.mavlink.commands import guided, into, mission, stand_down
 from muster_robots.mavlink.dialect import Message, mavlink
 from muster_robots.mavlink.drone import Drone, UnheardOrder
 from muster_robots.mavlink.fault_detection import FaultDetector
-from muster_robots.mavlink.faults import TEXTS_BEFORE_S, Costs, Fault, FaultError, Kind, Reaction, StatusText
+from muster_robots.mavlink.faults import (
+    KIND_UNDER,
+    TEXTS_BEFORE_S,
+    Costs,
+    Fault,
+    FaultError,
+    Kind,
+    Reaction,
+    StatusText,
+)
 from muster_robots.mavlink.own_limits import read_parameters, refusal_of
 from muster_robots.mavlink.position_targets import EVERY_S, position_target
-from muster_robots.mavlink.procedures import command
+from muster_robots.mavlink.procedures import telemetry_requests
 from muster_robots.mavlink.requests import RequestSequence, Script
 
 Fence = Callable[[Place, Sequence[Waypoint]], str]
 """Why a drone may not go from a place through way points; empty if it may."""
 
-_TELEMETRY = (30, 32, 33, 147, 1, 42, 162, 245)
-"""ATTITUDE, the two places, the two of the battery, MISSION_CURRENT, fence, EXTENDED_SYS_STATE."""
-_TELEMETRY_US = 100_000
 _ASK_AGAIN_S = 5.0
 _LET_GO = Kind.LANDED, Kind.DISARMED
 """Faults after which Muster sends no command any more."""
@@ -34,8 +40,6 @@ _ANSWERS_S = 2.0
 """Seconds without any message after which answers are not waited for, until something is heard again."""
 _WANTED: dict[AtEnd, Wants] = {"hold": Wants.HOLD, "return": Wants.RETURN, "land": Wants.LAND}
 _AT_END: dict[Wants, AtEnd] = {wants: at_end for at_end, wants in _WANTED.items()}
-_KIND_OF = {Standing.PILOT: Kind.PILOT, Standing.FAILSAFE: Kind.FAILSAFE, Standing.STATION: Kind.STATION}
-"""Faults of a drone that somebody else has."""
 _REQUESTS = (mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_CMD_REQUEST_MESSAGE)
 
 
@@ -294,8 +298,8 @@ class Session:
             self._suspended = None
         elif after is Standing.SILENT:
             self._silent_since_s = self.drone.telemetry.place_s
-        elif after in _KIND_OF:
-            self._suspend(_KIND_OF[after], now)
+        elif after in KIND_UNDER:
+            self._suspend(KIND_UNDER[after], now)
         elif self._suspended is None and self.drone.telemetry.breach:
             self.fail(Kind.FENCE_BREACHED, self.drone.telemetry.breach, now)
         elif self._suspended is None and (unfit := self.drone.seen(busy=self.busy).unfit):
@@ -368,13 +372,8 @@ class Session:
         """Items reached: one that is lost is made up for by the next, and one that is repeated changes nothing."""
         unheard = self._unheard
         flown: Drone | UnheardOrder = self.drone if unheard is None or self.drone.route is not None else unheard
-        if flown.route is None:
-            return
-        if message.get_type() == "MISSION_ITEM_REACHED":
-            flown.passed = max(flown.passed, flown.route.passed(message.seq))
-        elif message.get_type() == "MISSION_CURRENT":
-            over = message.mission_state == mavlink.MISSION_STATE_COMPLETE
-            flown.passed = max(flown.passed, flown.route.passed(len(flown.route.items) if over else message.seq - 1))
+        if flown.route is not None:
+            flown.passed = max(flown.passed, flown.route.passed_by(message))
 
     def _go_on(self, now: float) -> None:
         if self._requests is not None and now <= self.drone.telemetry.heard_s + _ANSWERS_S:
@@ -407,9 +406,8 @@ class Session:
 
     def _ask_for_telemetry(self, now: float) -> None:
         self._asked_s = now
-        for number in _TELEMETRY:
-            rate = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, _TELEMETRY_US
-            self._say(command(self.drone.target, *rate))
+        for request in telemetry_requests(self.drone.target):
+            self._say(request)
 
     def _say(self, message: Message) -> None:
         """The one way out."""
