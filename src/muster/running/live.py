@@ -283,8 +283,8 @@ class _Heard(Protocol):
 def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float, needed: str = "its pose") -> None:
     """Wait until nothing is missing of the mission's robots, or `halt` is set.
 
-    Where more time is given, each robot is named in a warning with what is missing after `NAMED_AFTER_S`, and again with
-    what else is found to be missing later.
+    Where more time is given, each robot is named in a warning with what is missing after `NAMED_AFTER_S`, and again
+    with what else is found to be missing later.
 
     Parameters
     ----------
@@ -304,8 +304,8 @@ def wait_for_robots(fleet: _Heard, halt: threading.Event, wait_s: float, needed:
             found, _, expected = why.partition("; expected ")
             more = f" (and {len(robots_not_ready) - 1} more)" if len(robots_not_ready) > 1 else ""
             raise NetworkError(f"robot {robot}: {found} within {wait_s:g} s{more}; expected {expected or needed}")
-        if NAMED_AFTER_S < waited_s:
-            for robot, why in robots_not_ready.items() - named:
+        if waited_s > NAMED_AFTER_S:
+            for robot, why in sorted(robots_not_ready.items() - named):
                 _log.warning("robot %s: %s; it is waited for up to %g s", robot, why, wait_s)
             named |= robots_not_ready.items()
         time.sleep(0.05)
