@@ -372,7 +372,8 @@ def wait_for_robots(
 ) -> None:
     """Wait until nothing is missing of the mission's robots, or `halt` is set.
 
-    Where more time is given, each robot of which something is missing after `NAMED_AFTER_S` is named in a warning.
+    Where more time is given, each robot is named in a warning with what is missing after `NAMED_AFTER_S`, and again
+    with what else is found to be missing later.
 
     Parameters
     ----------
@@ -386,8 +387,7 @@ def wait_for_robots(
     NetworkError
         if something is missing when the time is over.
     """
-    begin = time.monotonic()
-    names_at_s = NAMED_AFTER_S if wait_s > NAMED_AFTER_S else math.inf
+    begin, named = time.monotonic(), set[tuple[str, str]]()
     while (robots_not_ready := fleet.robots_not_ready()) and not halt.is_set():
         waited_s = time.monotonic() - begin
         if waited_s > wait_s:
@@ -397,10 +397,10 @@ def wait_for_robots(
             found, _, expected = why.partition("; expected ")
             more = f" (and {len(robots_not_ready) - 1} more)" if len(robots_not_ready) > 1 else ""
             raise NetworkError(f"robot {robot}: {found} within {wait_s:g} s{more}; expected {expected or needed}")
-        if waited_s > names_at_s:
-            names_at_s = math.inf
-            for robot, why in robots_not_ready.items():
+        if waited_s > NAMED_AFTER_S:
+            for robot, why in sorted(robots_not_ready.items() - named):
                 _log.warning("robot %s: %s; it is waited for up to %g s", robot, why, wait_s)
+            named |= robots_not_ready.items()
         time.sleep(0.05)
 
 

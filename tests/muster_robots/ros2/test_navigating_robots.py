@@ -194,8 +194,8 @@ def test_a_robot_whose_orders_nobody_receives_is_named_before_the_mission_begins
     wait_for_topics("/r_0/odom", "/r_1/odom")
     assert run(["ros2", mission, *QUICK, "--profile", profile, "--wait", "6"]) == 2
     assert capsys.readouterr().err == f"robot r_1: nobody receives its orders within 6 s; expected {expected}\n"
-    named = [record.getMessage() for record in caplog.records if record.name == "muster.running.live"][-1]
-    assert named == f"robot r_1: nobody receives its orders; expected {expected}; it is waited for up to 6 s"
+    named = [record.getMessage() for record in caplog.records if record.name == "muster.running.live"]
+    assert f"robot r_1: nobody receives its orders; expected {expected}; it is waited for up to 6 s" in named
 
 
 def test_a_server_on_another_make_of_dds_is_named_and_not_called(robot, monkeypatch):
