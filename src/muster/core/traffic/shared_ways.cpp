@@ -16,6 +16,7 @@ constexpr int kGroup = 4;          // travellers that are planned anew at a time
 constexpr int kTries = 8;          // orders in which all make way for each other, of which the best counts
 constexpr double kMostAhead = 10;  // rounds that a try puts a traveller ahead
 constexpr double kChanged = 0.3;   // the share of travellers whose priorities a try changes
+constexpr double kWorse = 0.02;    // the share by which ways may get worse at first
 constexpr int kMoreWhereLost = 4;  // times as many ways are sought where some find none
 
 }  // namespace
@@ -123,14 +124,26 @@ void SharedWays::find_alone(int traveller) {
   now_.cut_off[traveller] = goes && who.stops.empty();
 }
 
+// Where all made way for each other, ways may get a little worse at a time, so that the search leaves local optima.
 void SharedWays::improve(int ways) {
   const auto delayed = [&](int k) { return now_.ways[k].end > now_.alone[k].end; };
+  const double worse = now_.all_rest ? kWorse : 0.0;
+  State best = now_;
+  Cost least = cost();
   for (int sought = 0; std::ranges::any_of(now_.free, delayed);) {
-    if (sought >= (cost().first > 0 ? kMoreWhereLost : 1) * ways) return;
+    if (sought >= (cost().first > 0 ? kMoreWhereLost : 1) * ways) break;
     const std::vector<int> group = neighbours();
     sought += static_cast<int>(group.size());
-    replan(group);
+    replan(group, worse * (1.0 - static_cast<double>(sought) / ways));
+    if (worse > 0.0 && cost() < least) {
+      least = cost();
+      best = now_;
+    }
   }
+  if (!(least < cost())) return;
+  now_ = std::move(best);
+  clear();
+  put_on_all_but({});
 }
 
 void SharedWays::plan(std::span<const int> group) {
@@ -142,7 +155,7 @@ void SharedWays::plan(std::span<const int> group) {
   }
 }
 
-void SharedWays::replan(const std::vector<int>& group) {
+void SharedWays::replan(const std::vector<int>& group, double worse) {
   const Cost before = cost();
   std::vector<Way> kept;
   for (const int k : group) {
@@ -150,7 +163,7 @@ void SharedWays::replan(const std::vector<int>& group) {
     kept.push_back(now_.ways[k]);
   }
   plan(group);
-  if (cost() < before) {
+  if (cost() < Cost{before.first, before.second * (1.0 + std::max(0.0, worse))}) {
     move_back(group);
     return;
   }

@@ -69,7 +69,8 @@ class SharedWays {
   void find_alone(int traveller);
   void plan(std::span<const int> group);
   void improve(int ways);
-  void replan(const std::vector<int>& group);
+  // Keeps what is better, or worse by less than this share.
+  void replan(const std::vector<int>& group, double worse);
   void move_back(const std::vector<int>& group);  // in the order
   // Travellers that are planned anew together: one that is late, or has no way, and others that it meets.
   std::vector<int> neighbours();
