@@ -104,4 +104,6 @@ def server_of(robots, port=0):
 
 if __name__ == "__main__":
     port = int(sys.argv[1]) if len(sys.argv) > 1 else 8000
-    server_of(Robots({"r_0": (0.0, 0.0), "r_1": (0.0, 3.0)}), port).serve_forever()
+    server = server_of(Robots({"r_0": (0.0, 0.0), "r_1": (0.0, 3.0)}), port)
+    print(f"robots: http://127.0.0.1:{port}", flush=True)
+    server.serve_forever()
