@@ -82,6 +82,7 @@ ALLOWED = {
 OTHER_MEANING = {
     "__init__.py": ("load", "`muster.load` reads a mission"),
     "motion/maps/images.py": ("load", "pixels of a picture are loaded"),
+    "running/bring_home.py": ("lock prerequisite suitability", "robots come home without the mission's rules"),
     "running/fleet_type.py": ("team battery", "abilities of fleets"),
     "running/worlds.py": ("team", "abilities of worlds"),
     "simulation/declaration.py": ("team", "abilities of worlds"),

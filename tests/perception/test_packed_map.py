@@ -7,8 +7,8 @@ import pytest
 
 from muster import Simulation, load, solve
 from muster.motion.map_world import body_of
+from muster.motion.unreachable_places import checked_world
 from muster.perception.team_map import TeamMap
-from muster.running.unknown_ground import UnknownGround
 from muster_studies.unknown.scenes import random_space, random_world
 
 
@@ -20,7 +20,7 @@ def test_a_map_comes_back_as_it_was(mission):
     while not run.done and run.time_s < 12.0:
         run.advance(12.0)
     was = run._ground.map
-    again = TeamMap(UnknownGround(mission, explore=False)._truth, mission)
+    again = TeamMap(checked_world(mission), mission)
     again.resume(json.loads(json.dumps(was.snapshot())))
     seen = [(was.ground.seen, again.ground.seen)]
     if was.air is not None:

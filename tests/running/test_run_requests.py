@@ -280,7 +280,9 @@ def test_a_request_of_real_robots_is_read_again():
     request = RunRequest.from_settings("ros1", flat)
     assert request.settings == Ros1Settings(drive="goals", avoidance="orca", namespace="team")
     assert request.avoidance == "auto"
-    assert request.as_settings() == flat
+    settings = request.as_settings()
+    assert settings == {**flat, "frame": "map", "odometry": "map", "poses": ""}  # as a profile may say otherwise
+    assert RunRequest.from_settings("ros1", settings) == request
 
 
 def test_what_only_this_process_has_is_no_setting():

@@ -23,7 +23,7 @@ def test_moves_after_a_goal_lead_on_from_it():
     behind = Traveller(
         Robot(id="b", position=(1.0, 0.4), radius_m=0.3), (1.0, 0.4), (Stop((7.0, 0.4), 2.0),), stays=False
     )
-    moves = plan._by_inheritance([first, behind])
+    moves = plan([first, behind])
     of_first = [(move.to, move.stop) for move in moves if move.traveller == 0]
     at = [to for to, _ in of_first].index((4.0, 0.4))
     assert [stop for _, stop in of_first] == [0] * (at + 1) + [1] * (len(of_first) - at - 1)

@@ -12,7 +12,8 @@ from muster.cli.exits import BAD_INPUT, DONE, INTERRUPTED, STILL_MOVING
 from muster.cli.main import run
 from muster.execution.final_state import FinalState, RobotsLeftError
 from muster.mission.yaml_writer import yaml_text
-from muster.running.fleet_registry import FLEETS, declares
+from muster.running.fleet_registry import FLEETS
+from muster.running.fleet_type import ABILITIES, FleetType
 from muster.running.journal_file import journal_place, read_journal
 from muster_robots.cli.going_on import GoingOn
 
@@ -45,11 +46,10 @@ def fleet(there):
     """A fleet of another package, opened again and again."""
     world = Lasting(there)
 
-    @declares(claims=lambda settings: ["the yard"])
     def open_yard(mission, settings, halt, again):
         return world, lambda: None
 
-    FLEETS.add("yard", open_yard)
+    FLEETS.add("yard", FleetType(name="yard", open=open_yard, abilities=ABILITIES, claims=lambda _: ["the yard"]))
     yield world
     FLEETS.remove("yard")
 
@@ -180,13 +180,12 @@ def test_who_was_sent_off_and_is_not_heard_any_more_counts_as_moving(interrupted
 
 
 def test_robots_that_a_refusal_leaves_armed_are_named(there, tmp_path, capsys):
-    @declares(claims=lambda settings: ["the sky"])
     def open_sky(mission, settings, halt, again):
         raise RobotsLeftError(
             "r_0: stands far away", [FinalState("r_0", "hovers, armed", (1.0, 2.0, 3.0), moving=True)]
         )
 
-    FLEETS.add("sky", open_sky)
+    FLEETS.add("sky", FleetType(name="sky", open=open_sky, abilities=ABILITIES, claims=lambda _: ["the sky"]))
     code = run(["run", str(tmp_path / "m.yaml"), "--fleet", "sky", "--iterations", "5"])
     FLEETS.remove("sky")
     assert code == STILL_MOVING

@@ -26,7 +26,7 @@ _log = logging.getLogger("muster_control.pages")
 class RunView(
     Element,
     component="live.js",
-    esm={"muster-live": "js", "muster-record": str(files("muster.report.page") / "modules")},
+    esm={"muster-live": "js", "muster-record": str(files("muster") / "report" / "page" / "modules")},
     default_classes="muster-live-frame",
 ):
     """Map, robots, events and commands of one run.
