@@ -7,7 +7,6 @@ the cell, the random one has other cells.
 
 from __future__ import annotations
 
-import math
 import os
 import statistics
 import time
@@ -18,14 +17,13 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from muster.core import SafeIntervals, SharedWays, Traveller
 from muster.mission.values.arrays import Bools
 from muster.traffic.joint_path_faults import faults
 from muster.traffic.joint_paths import JointPaths, Parameters, costs, grid_graph, joint_paths
+from muster.traffic.journeys.roadmap_network import moves_at_once
 from muster.traffic.move_faults import distances
 from muster.traffic.move_faults import faults as move_faults
 from muster.traffic.movingai import Ends, read_map, read_scenario
-from muster.traffic.roadmaps.edge_conflicts import annotated
 from muster_studies.benches.measurement import Measurement
 
 FOLDER = "MUSTER_MAPF"
@@ -111,35 +109,16 @@ def roadmap_bench(runs: int) -> list[Measurement]:
     for seed in range(runs):
         random = np.random.default_rng(seed)
         starts, goals = (random.permutation(len(roadmap.points))[:200].tolist() for _ in range(2))
-        intervals = SafeIntervals(annotated(roadmap), [True] * len(roadmap.points), 0.02)
-        travellers = [_traveller(start, goal) for start, goal in zip(starts, goals, strict=True)]
         begin = time.process_time()
-        shared = SharedWays(intervals, travellers, order=list(range(200)), ways=0, seed=seed, at_once=True)
+        in_turn, through = moves_at_once(roadmap, starts, goals, radius_m=0.3, margin_m=0.02, seed=seed)
         seconds.append(time.process_time() - begin)
-        timed, ends = shared.paths()
-        in_turn = [(robot, edge) for _, robot, edge, _ in timed]
         wrong = move_faults(roadmap.points, roadmap.edges, starts, in_turn, [0.3] * 200, 0.02)
         if wrong:
             raise AssertionError(wrong[0])
         moves.append(len(in_turn))
-        arrived += math.inf not in ends
+        arrived += through
     note = f"{arrived} of {runs} to all goals; {len(roadmap.points):,} points, {statistics.mean(moves):,.0f} moves"
     return [Measurement.over_runs("200 robots, aisles in 100 m x 100 m", "CPU s", seconds, "< 1", note)]
-
-
-def _traveller(start: int, goal: int) -> Traveller:
-    return Traveller(
-        start=start,
-        stops=[(goal, 0.0)],
-        radius=0.3,
-        speed=1.0,
-        heading=0.0,
-        yaw_rate=math.inf,
-        acceleration=math.inf,
-        ready=0.0,
-        fixed=False,
-        stays=False,
-    )
 
 
 def _map(name: str, make: Callable[[], Bools]) -> Bools:
