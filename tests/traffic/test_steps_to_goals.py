@@ -1,4 +1,4 @@
-"""Moves planned step by step: a robot stops at its goal to do its work there, also where it makes way afterwards."""
+"""Moves of several robots: a robot stops at its goal to do its work there, also where it makes way afterwards."""
 
 import numpy as np
 
@@ -15,17 +15,17 @@ LANE = Roadmap.of(
 
 
 def test_moves_after_a_goal_lead_on_from_it():
-    """One works half way along a lane for one, and the other goes to its end past that place."""
+    """One works half way along a lane for one, and the other goes past that place."""
     plan = RoadmapPlan(LANE)
     first = Traveller(
         Robot(id="a", position=(2.0, 0.4), radius_m=0.3), (2.0, 0.4), (Stop((4.0, 0.4), 2.0),), stays=False
     )
     behind = Traveller(
-        Robot(id="b", position=(1.0, 0.4), radius_m=0.3), (1.0, 0.4), (Stop((7.0, 0.4), 2.0),), stays=False
+        Robot(id="b", position=(1.0, 0.4), radius_m=0.3), (1.0, 0.4), (Stop((5.5, 0.4), 2.0),), stays=False
     )
     moves = plan([first, behind])
-    of_first = [(move.to, move.stop) for move in moves if move.traveller == 0]
-    at = [to for to, _ in of_first].index((4.0, 0.4))
-    assert [stop for _, stop in of_first] == [0] * (at + 1) + [1] * (len(of_first) - at - 1)
-    assert len(of_first) > at + 1
-    assert {move.stop for move in moves if move.traveller == 1} == {0}
+    for traveller, goal in ((0, (4.0, 0.4)), (1, (5.5, 0.4))):
+        own = [(move.to, move.stop) for move in moves if move.traveller == traveller]
+        at = [to for to, _ in own].index(goal)
+        assert [stop for _, stop in own] == [0] * (at + 1) + [1] * (len(own) - at - 1)
+    assert [move.stop for move in moves if move.traveller == 0][-1] == 1

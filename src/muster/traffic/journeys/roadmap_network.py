@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import NamedTuple
@@ -14,7 +14,7 @@ from muster import core
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.traffic.journeys.travellers import Move, Point, Traveller
-from muster.traffic.roadmaps.edge_conflicts import annotated, conflicts
+from muster.traffic.roadmaps.edge_conflicts import WithConflicts, annotated, conflicts
 from muster.traffic.roadmaps.lane_sections import ON_LANE_M
 from muster.traffic.roadmaps.roadmap import Indices, Roadmap
 from muster.traffic.roadmaps.robot_spaces import RobotSpaces
@@ -100,6 +100,34 @@ class Network:
             fixed=who.fixed,
             stays=who.stays,
         )
+
+
+def moves_at_once(
+    roadmap: WithConflicts, starts: Sequence[int], goals: Sequence[int], *, radius_m: float, margin_m: float, seed: int
+) -> tuple[list[tuple[int, int]], bool]:
+    """Return moves (robot, edge) that bring robots of one radius to their goals at 1 m/s, and whether all come there.
+
+    All go at once and make way for each other; their ways are not improved.
+    """
+    intervals = core.SafeIntervals(annotated(roadmap), [True] * len(roadmap.points), margin_m)
+    travellers = [
+        core.Traveller(
+            start=start,
+            stops=[(goal, 0.0)],
+            radius=radius_m,
+            speed=1.0,
+            heading=0.0,
+            yaw_rate=math.inf,
+            acceleration=math.inf,
+            ready=0.0,
+            fixed=False,
+            stays=False,
+        )
+        for start, goal in zip(starts, goals, strict=True)
+    ]
+    order = list(range(len(travellers)))
+    moves, ends = core.SharedWays(intervals, travellers, order=order, ways=0, seed=seed, at_once=True).paths()
+    return [(robot, edge) for _, robot, edge, _ in moves], math.inf not in ends
 
 
 def with_places(roadmap: Roadmap, spaces: RobotSpaces, places: Iterable[Standing]) -> Roadmap:

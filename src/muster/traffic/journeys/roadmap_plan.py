@@ -44,7 +44,7 @@ class RoadmapPlan:
     for_more
         makes the roadmap for robots of further radii, which may join; without it there are none.
     cut_off
-        see `Planner`; where many travel on a large roadmap this is not found out: any of them may be.
+        see `Planner`.
     stepwise
         see `Planner`.
     """
