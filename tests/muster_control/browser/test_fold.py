@@ -167,7 +167,7 @@ def test_both_know_the_same_after_events_in_any_order(both, plan, seed):  # noqa
 
 
 def test_random_events_are_of_all_kinds(plan):  # noqa: F811
-    assert {entry["kind"] for seed in range(6) for entry in Drawn(seed, plan).entries(300)} == set(KINDS)
+    assert {entry["kind"] for seed in range(18) for entry in Drawn(seed, plan).entries(300)} == set(KINDS)
 
 
 def test_a_robot_that_is_out_is_known_by_the_kinds_of_python():
