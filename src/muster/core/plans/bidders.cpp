@@ -91,7 +91,7 @@ double Bidders::offer(int robot, int task) {
   if (!problem_.fits(robot, usage(robot) + growth)) return kNever;
   switch (figure_) {
     case Figure::growth:
-      return in_quanta(growth);
+      break;
     case Figure::arrivals:
       return in_quanta(arrivals(robot, task));
     case Figure::end:
@@ -216,8 +216,8 @@ void Bidders::consider(int robot, int task, int at) {
   const double growth = problem_.growth(robot, draft_.route(robot), task, at);
   double& least = growth_[index(robot, task)];
   int& place = place_[index(robot, task)];
-  if (in_quanta(growth) < in_quanta(least) ||
-      (in_quanta(growth) == in_quanta(least) && at < place && std::isfinite(growth))) {
+  const double here = in_quanta(growth), best = in_quanta(least);
+  if (here < best || (here == best && at < place && std::isfinite(growth))) {
     least = growth;
     place = at;
   }
