@@ -7,6 +7,7 @@ of any other run.
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -145,7 +146,7 @@ def home_of(robot: str) -> str:
 
 def _way_home(start: Robot, here: tuple[float, ...], dimensions: int) -> list[Task]:
     """The tasks by which a robot comes home; none where it is there."""
-    if sum((a - b) ** 2 for a, b in zip(here, start.position, strict=True)) ** 0.5 <= AWAY_M["ground"]:
+    if math.dist(here, start.position) <= AWAY_M["ground"]:
         return []
     only = (start.id,)
     home = Task(id=home_of(start.id), position=start.position, only_robots=only)

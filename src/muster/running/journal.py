@@ -6,6 +6,7 @@ the rest from where robots are then.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Self
@@ -200,7 +201,7 @@ def left_behind(before: ReadJournal, mission: Mission, states: Sequence[FinalSta
     for one in states:
         robot, away_m = starts.get(one.robot), 0.0
         if robot is not None and one.position is not None:
-            away_m = sum((a - b) ** 2 for a, b in zip(one.position[:2], robot.position[:2], strict=True)) ** 0.5
+            away_m = math.dist(one.position[:2], robot.position[:2])
         far = robot is not None and away_m > AWAY_M.get(robot.kind, AWAY_M["ground"])
         if one.moving or far:
             found.append(f"{one}, {away_m:.1f} m from its start" if far else str(one))

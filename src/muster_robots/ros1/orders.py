@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
@@ -145,7 +146,7 @@ class VelocityOrders:
         self._publisher.unregister()
 
 
-class _Goals:
+class _Goals(ABC):
     """Base of orders that are goals: which way point was given, and with which heading."""
 
     def __init__(self, frame: str, again_s: float) -> None:
@@ -155,7 +156,7 @@ class _Goals:
         self._given_s = -math.inf
         self._facing = 0.0  # of the goal that was given, where its way point asks for no heading
 
-    def begin(self, now_s: float) -> None:
+    def begin(self, now_s: float) -> None:  # noqa: B027 - nothing is said before
         """Goals are given by `speak`."""
 
     def _follow(self, course: Course) -> None:
@@ -175,11 +176,13 @@ class _Goals:
         self._given = None
         self._stay(None if said is None else pose_stamped(self._frame, place, said.heading))
 
+    @abstractmethod
     def _give(self, goal: Any) -> None:
-        raise NotImplementedError
+        """Give a goal, a PoseStamped."""
 
+    @abstractmethod
     def _stay(self, here: Any | None) -> None:
-        raise NotImplementedError
+        """Let the robot stay where it is; None: that is not known."""
 
 
 class GoalOrders(_Goals):
