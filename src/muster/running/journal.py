@@ -16,7 +16,7 @@ from muster.execution.record import NoObserver, Recorder, Recorders
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.port import Waypoint
-from muster.running.journal_file import Header, JournalFile, ReadJournal, read_journal
+from muster.running.journal_file import Header, JournalFile, ReadJournal, SparedFile, read_journal
 from muster.state import MissionState, event_of
 from muster.state.recovery import ORDER
 from muster.state.robot_events import FinalStates
@@ -53,7 +53,7 @@ class Journal(NoObserver):
     def __init__(
         self, mission: Mission, file: JournalFile, before: ReadJournal | None, ignored: Collection[str], say: Say | None
     ) -> None:
-        self._file: JournalFile | None = file
+        self._file = SparedFile(file, self._give_up)
         self._say = (lambda line: None) if say is None else say
         self.path = file.path
         self.plan = None if before is None else before.plan
@@ -110,7 +110,7 @@ class Journal(NoObserver):
 
     def on_step(self, now: float, *states: object) -> None:
         """See `Recorder`: robots say where they are when the run goes on. What was written is synced."""
-        self._sync()
+        self._file.sync()
 
     def on_report(self, report: Mapping[str, Any]) -> None:
         """See `Recorder`: it follows from what was written."""
@@ -118,41 +118,22 @@ class Journal(NoObserver):
     def on_order(self, now: float, robot: str, waypoints: Sequence[Waypoint]) -> None:
         """Write an order and sync all, before it is sent; without way points the robot stays where it is."""
         self._write(now, ORDER, order_data(robot, waypoints))
-        self._sync()
+        self._file.sync()
 
     def end(self, states: Sequence[FinalState]) -> None:
         """Write where robots are when all is done, or the run is interrupted."""
         self._write(self._known.now_s, FinalStates.kind, final_states_event(states).data)
-        self._sync()
+        self._file.sync()
 
     def close(self) -> None:
         """Close the file."""
-        if self._file is not None:
-            self._sync()
-        if self._file is not None:
-            self._file.close()
-            self._file = None
+        self._file.close()
 
     def _write(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
-        if self._file is not None:
-            file = self._file
-            self._attempt(lambda: file.append({"time_s": round(now, 9), "kind": kind, "data": data}))
+        self._file.append({"time_s": round(now, 9), "kind": kind, "data": data})
 
-    def _sync(self) -> None:
-        if self._file is not None:
-            self._attempt(self._file.sync)
-
-    def _attempt(self, act: Callable[[], None]) -> None:
-        """Write; where that fails, as on a full disk, the run goes on without a journal."""
-        try:
-            act()
-        except (OSError, ValueError) as error:
-            assert self._file is not None
-            self._file.remove()
-            self._file.close()
-            self._file = None
-            why = getattr(error, "strerror", None) or str(error)
-            self._say(f"warning: {self.path}: {why}; the journal is removed: the run goes on, and cannot be resumed")
+    def _give_up(self, why: str) -> None:
+        self._say(f"warning: {self.path}: {why}; the journal is removed: the run goes on, and cannot be resumed")
 
 
 def order_data(robot: str, waypoints: Sequence[Waypoint]) -> dict[str, Any]:

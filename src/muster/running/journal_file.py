@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
@@ -257,6 +257,48 @@ class JournalFile:
         """Remove the file: it cannot be written any more, and what it says is not true for long."""
         with suppress(OSError):
             self.path.unlink()
+
+
+class SparedFile:
+    """A journal that is removed where it cannot be written, as on a full disk: robots do not wait for it.
+
+    Parameters
+    ----------
+    file : JournalFile
+        The journal.
+    give_up : callable
+        Receives why it could not be written, once.
+    """
+
+    def __init__(self, file: JournalFile, give_up: Callable[[str], object]) -> None:
+        self._file: JournalFile | None = file
+        self._give_up = give_up
+
+    def append(self, line: Mapping[str, Any]) -> None:
+        """Append a line."""
+        self._attempt(lambda file: file.append(line))
+
+    def sync(self) -> None:
+        """Return when the disk has all that was appended, or the journal is removed."""
+        self._attempt(lambda file: file.sync())
+
+    def close(self) -> None:
+        """Sync and close the file."""
+        self.sync()
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def _attempt(self, act: Callable[[JournalFile], None]) -> None:
+        if self._file is None:
+            return
+        try:
+            act(self._file)
+        except (OSError, ValueError) as error:
+            self._file.remove()
+            self._file.close()
+            self._file = None
+            self._give_up(getattr(error, "strerror", None) or str(error))
 
 
 def _write_first_line(path: Path, header: Header) -> None:

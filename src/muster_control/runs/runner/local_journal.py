@@ -17,7 +17,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.port import Waypoint
 from muster.running.journal import order_data
-from muster.running.journal_file import Header, JournalFile, read_journal
+from muster.running.journal_file import Header, JournalFile, SparedFile, read_journal
 from muster.state.recovery import ORDER
 from muster.state.words import words_of
 from muster_control.runs.runner.pipe import Outbox
@@ -51,7 +51,9 @@ class LocalJournal:
         self._out, path = out, Path(begin["journal"])
         header = Header.of(mission, plan, begin["world"], (f"run {begin['run']} of {begin['at']}",))
         self._again, whole_bytes = _later_entries(path, header, begin["seq"])
-        self._file: JournalFile | None = JournalFile(path, None if whole_bytes else header, whole_bytes)
+        file = JournalFile(path, None if whole_bytes else header, whole_bytes)
+        told = "%s: %s; the journal is removed: what the server has not taken when machines fail is not known then"
+        self._file = SparedFile(file, lambda why: _log.warning(told, path, why))
         self.begin = _with(begin, self._again)
         self.obeyed = {entry["data"]["action"] for entry in self._again if entry["kind"] == "command"}
 
@@ -64,7 +66,7 @@ class LocalJournal:
 
     def entry(self, message: Mapping[str, Any]) -> None:
         """See `log_recorder.Out`."""
-        self._append({key: message[key] for key in ("seq", "time_s", "kind", "data")})
+        self._file.append({key: message[key] for key in ("seq", "time_s", "kind", "data")})
         self._out.entry(message)
 
     def stretch(self, from_s: float, until_s: float, data: bytes) -> None:
@@ -74,8 +76,8 @@ class LocalJournal:
     def send(self, message: Mapping[str, Any]) -> None:
         """See `Outbox`; the end of a tick is written."""
         if message["type"] == _TICK:
-            self._append({"time_s": 0.0, "kind": _TICK, "data": {}})
-            self._sync()
+            self._file.append({"time_s": 0.0, "kind": _TICK, "data": {}})
+            self._file.sync()
         self._out.send(message)
 
     def send_if_room(self, message: Mapping[str, Any]) -> None:
@@ -89,36 +91,12 @@ class LocalJournal:
 
     def before_order(self, now: float, robot: str, waypoints: Sequence[Waypoint]) -> None:
         """Write an order and sync all, before it is sent."""
-        self._append({"time_s": round(now, 9), "kind": ORDER, "data": order_data(robot, waypoints)})
-        self._sync()
+        self._file.append({"time_s": round(now, 9), "kind": ORDER, "data": order_data(robot, waypoints)})
+        self._file.sync()
 
     def close(self) -> None:
         """Close the file."""
-        if self._file is not None:
-            self._sync()
-            self._file.close()
-            self._file = None
-
-    def _append(self, line: Mapping[str, Any]) -> None:
-        if self._file is not None:
-            try:
-                self._file.append(line)
-            except OSError:
-                self._give_up()
-
-    def _sync(self) -> None:
-        if self._file is not None:
-            try:
-                self._file.sync()
-            except OSError:
-                self._give_up()
-
-    def _give_up(self) -> None:
-        """Robots do not wait for a disk that is full: the log of the server is what is left."""
-        assert self._file is not None
-        self._file.remove()
         self._file.close()
-        self._file = None
 
 
 def _later_entries(path: Path, header: Header, seq: int) -> tuple[list[Mapping[str, Any]], int]:

@@ -7,6 +7,7 @@ from tests.running.test_live import WorldAsFleet, mission
 
 import muster
 from muster.motion.port import Waypoint
+from muster.running.journal_file import JournalFile
 from muster.running.run_request import OPEN_FLEET, RunRequest
 from muster.state.recovery import recovered_from
 from muster_control.runs.runner.local_journal import LocalJournal
@@ -121,10 +122,10 @@ def test_no_robot_stops_for_a_disk_that_is_full(begin, monkeypatch, tmp_path):
     journal, sent = local(begin()), Sent()
     journal._out = sent
 
-    def full(line):
+    def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(journal._file, "append", full)
+    monkeypatch.setattr(JournalFile, "append", full)
     journal.entry(entry(1))
     journal.before_order(1.0, "r_0", ())
     assert sent.entries == [entry(1)]
