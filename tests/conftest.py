@@ -63,13 +63,26 @@ def pytest_collection_modifyitems(config, items):
         shuffle(items, config.getoption("shuffle"))
 
 
+LOGGERS = [logging.getLogger(name) for name in (None, "muster", "muster_robots")]
+
+
 @pytest.fixture(autouse=True)
-def log_level():
-    """What `-q` of a verb does to the log of this process ends with the test."""
-    logger = logging.getLogger("muster")
-    before = logger.level
+def logs():
+    """What `-q` of a verb, a node of ROS 1 or a library does to the logs of this process ends with the test."""
+    keep_handlers({handler for logger in LOGGERS for handler in logger.handlers})
+    before = [(logger, logger.level, set(logger.handlers)) for logger in LOGGERS]
     yield
-    logger.setLevel(before)
+    keep_handlers(set().union(*(handlers for _, _, handlers in before)))
+    for logger, level, _ in before:
+        logger.setLevel(level)
+
+
+def keep_handlers(kept):
+    """Leave these handlers and pytest's own; a stream that an earlier test has closed is written to no more."""
+    for logger in LOGGERS:
+        for handler in list(logger.handlers):
+            if type(handler) is logging.StreamHandler and (handler not in kept or handler.stream.closed):
+                logger.removeHandler(handler)
 
 
 def pytest_addoption(parser):

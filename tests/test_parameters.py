@@ -16,14 +16,15 @@ SOURCES = Path(muster.__file__).parents[1]
 
 
 def functions():
-    """The functions of all sources, with their files; verbs aside, whose parameters are the options of the command."""
+    """The functions of all sources, with their files."""
     for file in sorted(SOURCES.glob("muster*/**/*.py")):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not is_verb(node):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
                 yield file.relative_to(SOURCES).as_posix(), node
 
 
 def is_verb(node):
+    """Whether the parameters of a function are the options of the command."""
     return any(ast.unparse(decorator).startswith("click.command(") for decorator in node.decorator_list)
 
 
@@ -34,5 +35,5 @@ def parameters(node):
 
 
 def test_no_function_has_more_than_twelve_parameters():
-    found = {f"{file}:{node.name}" for file, node in functions() if parameters(node) > MOST}
+    found = {f"{file}:{node.name}" for file, node in functions() if parameters(node) > MOST and not is_verb(node)}
     assert found == MORE.keys()

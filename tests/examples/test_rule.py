@@ -162,10 +162,11 @@ def test_the_form_of_missions_has_a_column_for_it(run):
     assert run("-c", code).stdout == "number\n"
 
 
-@pytest.mark.long(keep=1)
-@pytest.mark.parametrize("first", [0, 12, 24])
-def test_every_plan_of_small_missions_says_the_same(run, first):
-    told = json.loads(run("-m", "tests.examples.max_tasks_trials", first, 12).stdout)
+@pytest.mark.parametrize(
+    ("first", "missions"), [(0, 3), *(pytest.param(first, 12, marks=pytest.mark.long) for first in (3, 15, 27))]
+)
+def test_every_plan_of_small_missions_says_the_same(run, first, missions):
+    told = json.loads(run("-m", "tests.examples.max_tasks_trials", first, missions).stdout)
     assert told["failures"] == {}
-    assert told["counts"]["reason max-tasks"] > 10
-    assert told["counts"]["remedies: a plan was found"] > 10
+    assert told["counts"]["reason max-tasks"] > 0
+    assert told["counts"]["remedies: a plan was found"] > 0

@@ -13,10 +13,15 @@ def test_shipped_missions_take_as_long_as_planned(name):
     assert abs(times_of(Job(name).mission).off) <= 5
 
 
-@pytest.mark.long(keep=4)
-@pytest.mark.parametrize("seed", [1000, 1001])
+@pytest.mark.parametrize("seed", [1000, pytest.param(1001, marks=pytest.mark.long)])
 @pytest.mark.parametrize(
-    "setting", [s for s in SETTINGS if not (s.over_map and "air" in s.kinds)], ids=lambda s: s.name
+    "setting",
+    [
+        pytest.param(setting, marks=[pytest.mark.long] if setting.over_map else [])
+        for setting in SETTINGS
+        if not (setting.over_map and "air" in setting.kinds)
+    ],
+    ids=lambda s: s.name,
 )
 def test_random_missions_take_as_long_as_planned(setting, seed):
     """Over maps in the air the judge takes many seconds; `muster study flown` has those."""

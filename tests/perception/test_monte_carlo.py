@@ -67,7 +67,7 @@ def test_it_finds_a_robot_that_does_not_know_where_it_starts(field, seed):
     np.testing.assert_allclose(found, way[-1], atol=0.15)
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_it_finds_a_robot_that_was_carried_elsewhere(field, seed):
     random = np.random.default_rng(seed)

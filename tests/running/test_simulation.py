@@ -198,7 +198,7 @@ def test_one_that_returns_before_it_is_available_waits_until_then():
 def test_depot_is_carried_out_as_planned_and_whole_whatever_happens():
     """All actions over a map in space, several robots at once; then with a robot that fails and a task that appears."""
     mission = muster.load("depot")
-    plan = muster.solve(mission, iterations=2000)
+    plan = muster.solve(mission, iterations=300)
     assert plan.complete
     calm = carry_out(replace(mission, events=()), plan)
     assert (set(calm.tasks_done), calm.contacts, calm.reallocations) == ({t.id for t in mission.tasks}, 0, 0)

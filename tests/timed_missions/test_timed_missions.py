@@ -26,23 +26,25 @@ from tests.timed_missions.possibilities import Possibilities
 from tests.timed_missions.remedied import Remedied
 from tests.timed_missions.trial import Report, Trial, judged_trial, trial
 
-MISSIONS, CHUNK, FURTHER = 45, 15, 120
+
+def parts(few, chunk, every):
+    """The first few seeds, and the rest in parts that take long."""
+    rest = (range(max(first, few), first + chunk) for first in range(0, every, chunk))
+    return [range(few), *(pytest.param(seeds, marks=pytest.mark.long) for seeds in rest)]
 
 
-@pytest.mark.long(keep=1)
-@pytest.mark.parametrize("first", range(0, MISSIONS, CHUNK))
-def test_judge_bounds_reasons_and_remedies_agree_with_every_plan(first):
-    reports = [trial(seed, planned=False) for seed in range(first, first + CHUNK)]
+@pytest.mark.parametrize("seeds", parts(3, 15, 45), ids=str)
+def test_judge_bounds_reasons_and_remedies_agree_with_every_plan(seeds):
+    reports = [trial(seed, planned=False) for seed in seeds]
     assert {report.seed: report.failures for report in reports if report.failures} == {}
     assert sum(report.counts["remedies: a plan was found"] for report in reports) > 0
 
 
-@pytest.mark.long(keep=1)
-@pytest.mark.parametrize("first", range(0, 18, 6))
-def test_the_exact_solver_finds_the_best_of_every_plan(first):
+@pytest.mark.parametrize("seeds", parts(2, 6, 18), ids=str)
+def test_the_exact_solver_finds_the_best_of_every_plan(seeds):
     pytest.importorskip("ortools", reason="needs the extra exact")
     failures = {}
-    for seed in range(first, first + 6):
+    for seed in seeds:
         report = Report(seed)
         tried = Trial(report, timed_mission(seed), ignored_in(seed))
         tried.exactly(tried.problem)
@@ -50,10 +52,9 @@ def test_the_exact_solver_finds_the_best_of_every_plan(first):
     assert failures == {}
 
 
-@pytest.mark.long(keep=1)
-@pytest.mark.parametrize("first", range(0, 2 * FURTHER, FURTHER))
-def test_the_judge_agrees_with_the_meaning_of_rules_that_planning_does_not_know(first):
-    reports = [judged_trial(seed) for seed in range(first, first + FURTHER)]
+@pytest.mark.parametrize("seeds", parts(12, 120, 240), ids=str)
+def test_the_judge_agrees_with_the_meaning_of_rules_that_planning_does_not_know(seeds):
+    reports = [judged_trial(seed) for seed in seeds]
     assert {report.seed: report.failures for report in reports if report.failures} == {}
     counts = sum((report.counts for report in reports), Counter())
     alone = {f"judged: {kind} alone" for kind in ("shift", "duty", "aboard", "either-or")}
@@ -81,8 +82,7 @@ def test_the_missions_have_every_further_rule():
 
 def test_a_judge_that_errs_is_found(monkeypatch):
     monkeypatch.setattr("muster.verification.rules.duty.Duty.spans", lambda rule, route: iter(()))
-    failures = [failure for seed in range(40) for failure in judged_trial(seed).failures]
-    assert any("but it breaks {'time'}" in failure for failure in failures)
+    assert any("but it breaks {'time'}" in failure for failure in judged_trial(6).failures)
 
 
 def test_a_trial_that_goes_wrong_is_a_failure(monkeypatch):

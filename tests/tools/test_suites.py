@@ -174,6 +174,10 @@ class TestQuick:
 
 
 class TestCI:
+    @pytest.fixture(autouse=True)
+    def small_map(self, monkeypatch):
+        monkeypatch.setattr(ci, "read_map", lambda: MAP)
+
     def test_ten_turns_run_every_campaign_that_make_has(self):
         targets = set(re.findall(r"^((?:campaign|disturbances)[a-z-]*):", MAKEFILE, re.MULTILINE))
         assert {campaign.target for campaign in CAMPAIGNS} == targets

@@ -111,6 +111,7 @@ def test_a_mission_is_carried_out_by_the_maps_of_its_robots(start, simulated, tm
     assert "robots have no map" in err
 
 
+@pytest.mark.long
 def test_a_robot_that_tells_no_map_ends_it_before_anybody_moves(start, simulated, tmp_path):
     pytest.importorskip("cyclonedds")
     file = tmp_path / "room.yaml"

@@ -1,7 +1,6 @@
 """`muster ros2` over DDS: simulated robots, and the command, as processes of their own, on this computer alone."""
 
 import json
-import logging
 import os
 import signal
 import sys
@@ -253,14 +252,6 @@ def odometry(loopback):
     robots.close()
 
 
-@pytest.fixture
-def own_logs(monkeypatch):
-    """Without what a node of ROS 1 in the same process has set up to show warnings."""
-    for room in ("muster", "muster_robots"):
-        monkeypatch.setattr(logging.getLogger(room), "handlers", [])
-
-
-@pytest.mark.usefixtures("own_logs")
 def test_robots_in_a_frame_that_nothing_ties_to_the_map_are_refused_and_sent_nowhere(odometry, mission, capsys, caplog):
     says, goals = odometry
     says += [("r_0", "map", None), ("r_1", "r_1/odom", None)]
