@@ -13,6 +13,7 @@ KINDS = pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.
 HOME = "returned, landed, not armed"
 
 
+@pytest.mark.long(keep=10)
 @KINDS
 @pytest.mark.parametrize(
     "faults",
