@@ -13,8 +13,8 @@ import click
 from muster.cli.options.common import format_option, quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.system.platforms import require_posix
-from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.mission.values.keywords import require_one_of
 from muster_studies import study_verb
 from muster_studies.benches import BENCHES, bench_named
 from muster_studies.descriptions import comparisons
@@ -62,8 +62,7 @@ def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: b
     require_posix("muster bench")
     names = list(BENCHES) if only is None else [name.strip() for name in only.split(",")]
     for name in names:
-        if name not in BENCHES:
-            raise ParameterError(f"--only: {name}; expected {', '.join(BENCHES)}{did_you_mean(name, BENCHES)}")
+        require_one_of("--only", name, BENCHES)
     found = []
     for name in names:
         if not quiet:

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from muster.mission.errors import ParameterError
-from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.keywords import require_one_of
 from muster_studies.allocators import ALLOCATORS_STUDY
 from muster_studies.areas import AREAS
 from muster_studies.auction_5 import AUCTION_5
@@ -73,6 +72,5 @@ def study_named(name: str) -> Study:
     ParameterError
         if there is none.
     """
-    if name not in STUDIES:
-        raise ParameterError(f"study: {name}; expected {' or '.join(STUDIES)}{did_you_mean(name, STUDIES)}")
+    require_one_of("study", name, STUDIES, joined_by=" or ")
     return STUDIES[name]

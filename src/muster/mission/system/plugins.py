@@ -15,7 +15,7 @@ from typing import Any, Generic, TypeVar
 
 from muster.mission.errors import MusterError, ParameterError, PluginError
 from muster.mission.system.installation import DISTRIBUTION
-from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.keywords import require_one_of
 
 T = TypeVar("T")
 
@@ -92,9 +92,7 @@ class Registry(Mapping[str, T], Generic[T]):
         PluginError
             if its package cannot be loaded, or two packages register the name.
         """
-        if name not in self._entries:
-            hint = did_you_mean(str(name), self)
-            raise ParameterError(f"{self._what}: {name}; expected {', '.join(self)}{hint}")
+        require_one_of(self._what, name, self)
         return self[name]
 
     def usable(self) -> dict[str, T]:
