@@ -167,6 +167,26 @@ def function_expected(expected: str) -> Callable[[str, object], Any]:
     return checked
 
 
+def instance_expected(kind: type[T], expected: str = "") -> Callable[[str, object], T]:
+    """Return the check of implementations that are instances of a class, and of the name that one says it has.
+
+    Parameters
+    ----------
+    kind : type
+        The class.
+    expected : str
+        How messages call what should be registered; by default `a` and the name of the class.
+    """
+
+    def checked(name: str, found: object) -> T:
+        if not isinstance(found, kind):
+            raise ParameterError(f"it is a {type(found).__name__}; expected {expected or f'a {kind.__name__}'}")
+        require_own_name(name, getattr(found, "name", name))
+        return found
+
+    return checked
+
+
 def declaring(**facts: object) -> Callable[[T], T]:
     """What marks an implementation with facts about itself, as attributes of these names."""
 
