@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from muster.perception.drift import Drift
-from muster.report.figures.canvas import new_figure, quiet_frame
+from muster.report.figures.canvas import new_figure
 from muster.report.figures.styles import ALARM, DASHED, QUIET_TEXT, TEXT, robot_style
+from muster_studies.tracking_pictures import finish
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,7 +36,7 @@ def plot_drift_from_above(drift: Drift, names: Sequence[str], setpoints: Any, ti
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")
     ax.legend(loc="best", fontsize=7, frameon=False)
-    _finish(figure, title)
+    finish(figure, title)
     return figure
 
 
@@ -59,7 +60,7 @@ def plot_drift_of_coordinate(drift: Drift, names: Sequence[str], axis: int, titl
     below.set_ylabel("error [m]")
     below.set_xlabel("time [s]")
     above.legend(loc="best", fontsize=7, frameon=False, ncols=2)
-    _finish(figure, title)
+    finish(figure, title)
     return figure
 
 
@@ -89,11 +90,5 @@ def plot_drift_over_way(
     ax.set_ylabel("error of the place [m]")
     ax.set_ylim(bottom=0.0)
     ax.legend(loc="upper left", fontsize=7, frameon=False)
-    _finish(figure, title)
+    finish(figure, title)
     return figure
-
-
-def _finish(figure: Figure, title: str) -> None:
-    for ax in figure.axes:
-        quiet_frame(ax)
-    figure.suptitle(title, fontsize=10, fontweight="bold", color=TEXT)
