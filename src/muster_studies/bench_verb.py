@@ -24,16 +24,13 @@ _Verb = Callable[..., Any]
 _seeds_option = click.option(
     "--seeds", type=click.IntRange(min=1), metavar="N", help="Seeds 0 to N-1.  [default: 3; with --quick 1]"
 )
-_output_option = click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write the tables (.json, .md, or text)."
-)
 
 
 def _comparison_options(*, quick: str, tables: str | None = None) -> Callable[[_Verb], _Verb]:
     """The options of a comparison with others: what `--quick` does, and the tables to choose from, if several."""
 
     def decorate(verb: _Verb) -> _Verb:
-        verb = format_option(_output_option(quiet_option(click.pass_context(verb))))
+        verb = format_option(study_verb.output_option(quiet_option(click.pass_context(verb))))
         verb = _seeds_option(click.option("--quick", is_flag=True, help=quick)(verb))
         if tables is None:
             return verb
@@ -101,7 +98,7 @@ for _name, _words in comparisons().items():
     help="Add each run to this file; those that it has are not made again.",
 )
 @format_option
-@_output_option
+@study_verb.output_option
 @quiet_option
 def scale(
     tasks: str, seconds: str, kept: Path | None, form: str, output: Path | None, quiet: bool, verbose: bool
