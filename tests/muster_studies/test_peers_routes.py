@@ -23,11 +23,10 @@ from muster_studies.instances.routing import (
     shorter_plan,
     uniform_tour,
 )
-from muster_studies.peers.cells import mean_cell, ratio_cell, worst_cell
 from muster_studies.peers.contest import OWN, PEERS, Result, Standing, mission_of
 from muster_studies.peers.instance import Instance
-from muster_studies.peers.timed_studies import peers_routes_study
-from muster_studies.peers.timed_tables import ROUTES
+from muster_studies.peers.study import mean_cell, ratio_cell, worst_cell
+from muster_studies.peers.timed_studies import ROUTES, peers_routes_study
 from muster_studies.tables import Notes
 
 BY_NUMBER = {family.number: family for family in ROUTES}

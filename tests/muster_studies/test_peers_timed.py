@@ -14,8 +14,7 @@ from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, mission
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.processor_time import ProcessorStop
 from muster_studies.peers.teams_table import SETS, Teams
-from muster_studies.peers.timed_studies import peers_timed_study
-from muster_studies.peers.timed_tables import ORDERED, WINDOWS
+from muster_studies.peers.timed_studies import ORDERED, WINDOWS, peers_timed_study
 
 SECONDS = 0.15
 
