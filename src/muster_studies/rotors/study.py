@@ -10,12 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from muster.mission.values.arrays import Floats
 from muster.perception.optional_parts import require_physics
 from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.rotors import flown, published, reference
-from muster_studies.rotors.reference import Floats
 from muster_studies.tables import CHECK_MARK, Cell, Table
 
 SETTLED = 0.02
