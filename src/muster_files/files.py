@@ -1,7 +1,4 @@
-"""A plan as files of other programs, and messages for the user before anything flies.
-
-The gate of exports: no way that is written, drones at their heights, enters an area that is closed to its robot.
-"""
+"""A plan as files of other programs, and messages for the user before anything flies."""
 
 from __future__ import annotations
 
@@ -9,17 +6,15 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from itertools import pairwise
 
 from muster.execution.reports.itinerary import Itinerary, Passage, itineraries
-from muster.mission.errors import Finding, ParameterError, PlanError
+from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
 from muster.motion.map_world import body_of
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.planning.export_formats import ALTITUDE_MISSING, HEIGHTS, ExportOptions, Files, declares
 from muster.verification import Verdict
-from muster.verification.closed_areas import ClosedAreas
 from muster.verification.required import require_geometry
 from muster_files.altitudes import altitudes_of, at_work, height_notes, raised, raised_team
 from muster_files.antimeridian import crosses
@@ -31,31 +26,10 @@ from muster_files.geojson import geojson_text
 from muster_files.gpx import gpx_text
 from muster_files.instances.sol_files import sol_text
 from muster_files.kml import kml_text
+from muster_files.open_ways import require_open_itineraries
 from muster_files.qgc.writer import PlanFiles
 from muster_files.spreadsheet import csv_text
 from muster_files.thinning import thinned
-
-
-def require_open_itineraries(mission: Mission, team: Sequence[Itinerary]) -> None:
-    """Raise unless every piece of every way keeps out of closed areas.
-
-    A plan that is admissible at the heights of its mission may not be at heights that the options of an export give.
-
-    Raises
-    ------
-    PlanError
-        that names the robot, the leg and the zone.
-    """
-    areas = ClosedAreas(mission)
-    for itinerary in team:
-        for before, after in pairwise(itinerary.passages):
-            points = [passage.place[: mission.dimensions] for passage in (before, after)]
-            found = areas.obstacle(itinerary.robot, *points)
-            if found is not None:
-                leg = " to ".join(f"({', '.join(f'{c:g}' for c in point)})" for point in points)
-                expected = "heights at which the way stays outside of closed areas, or another plan"
-                subject = f"{itinerary.robot.id}, {after.task or 'way point'}, the leg from {leg} {found}"
-                raise PlanError([Finding("<plan>", None, "closed-area", subject, expected)])
 
 
 def csv_file(mission: Mission, verdict: Verdict) -> str:

@@ -8,7 +8,7 @@ from tests.muster_files.bay import BAY, bay, bay_plan
 from muster import export, load
 from muster.mission.errors import PlanError
 from muster_files.fence import Fence
-from muster_files.files import require_open_itineraries
+from muster_files.open_ways import require_open_itineraries
 
 
 def fences(folder, text=BAY):
