@@ -5,13 +5,18 @@ right of way. `control` turns velocities into torques and forces, MuJoCo turns t
 
 The ground is flat. A ground robot's height in the mission is that of its way, as in the kinematic world. In a mission
 in the plane drones fly at `FLIGHT_M`.
+
+Batteries of bodies: how much they hold, and what is drawn from them beside the work of rotors and wheels.
+
+A drone's holds what lets it hover for its flight time. A ground robot's is the TurtleBot3 Waffle's, 19.98 Wh for two
+hours of operation [robotis2017]; what that draws in the mean it draws all the time, wheels beside.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,7 +36,6 @@ from muster_physics.buildings import Heights
 from muster_physics.control import Control
 from muster_physics.controller import Commands
 from muster_physics.model import WALL_SETS, PlacedRobot
-from muster_physics.power_supply import power_supply
 from muster_physics.rays import Rays
 from muster_physics.scenery import Scenery
 from muster_physics.simulated_model import SimulatedModel
@@ -39,6 +43,31 @@ from muster_physics.wind import WindField
 
 if TYPE_CHECKING:
     from muster_physics.rendered_cameras import RenderedCameras
+
+WAFFLE_J = 19.98 * 3600.0
+WAFFLE_OPERATION_S = 2 * 3600.0
+
+
+@dataclass(frozen=True)
+class PowerSupply:
+    """A battery of a capacity in joules, from which a body draws `standing_w` all the time."""
+
+    capacity_j: float
+    standing_w: float
+
+    def drained(self, energy_j: float, seconds: float) -> float:
+        """The share of the capacity that this work, and being on for so long, have drained."""
+        return (energy_j + self.standing_w * seconds) / self.capacity_j
+
+
+def power_supply(body: RobotBody) -> PowerSupply:
+    """The supply of a body; in proportion to its mass."""
+    if body.kind is BodyKind.ROTORCRAFT:
+        airframe = body.rotorcraft
+        return PowerSupply(airframe.hover_w * airframe.flight_s, 0.0)
+    capacity_j = WAFFLE_J * body.scale**3
+    return PowerSupply(capacity_j, capacity_j / WAFFLE_OPERATION_S)
+
 
 PHYSICS_S = 0.005
 """The longest step of physics."""

@@ -13,8 +13,8 @@ import click
 from muster.cli.options.common import format_option, quiet_option
 from muster.mission.errors import MissingExtraError, ParameterError
 from muster.mission.system.platforms import require_posix
-from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.mission.values.keywords import require_one_of
 from muster_studies import study_verb
 from muster_studies.benches import BENCHES, bench_named
 from muster_studies.descriptions import comparisons
@@ -24,16 +24,13 @@ _Verb = Callable[..., Any]
 _seeds_option = click.option(
     "--seeds", type=click.IntRange(min=1), metavar="N", help="Seeds 0 to N-1.  [default: 3; with --quick 1]"
 )
-_output_option = click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write the tables (.json, .md, or text)."
-)
 
 
 def _comparison_options(*, quick: str, tables: str | None = None) -> Callable[[_Verb], _Verb]:
     """The options of a comparison with others: what `--quick` does, and the tables to choose from, if several."""
 
     def decorate(verb: _Verb) -> _Verb:
-        verb = format_option(_output_option(quiet_option(click.pass_context(verb))))
+        verb = format_option(study_verb.output_option(quiet_option(click.pass_context(verb))))
         verb = _seeds_option(click.option("--quick", is_flag=True, help=quick)(verb))
         if tables is None:
             return verb
@@ -62,8 +59,7 @@ def command(ctx: click.Context, only: str | None, runs: int, form: str, quiet: b
     require_posix("muster bench")
     names = list(BENCHES) if only is None else [name.strip() for name in only.split(",")]
     for name in names:
-        if name not in BENCHES:
-            raise ParameterError(f"--only: {name}; expected {', '.join(BENCHES)}{did_you_mean(name, BENCHES)}")
+        require_one_of("--only", name, BENCHES)
     found = []
     for name in names:
         if not quiet:
@@ -102,7 +98,7 @@ for _name, _words in comparisons().items():
     help="Add each run to this file; those that it has are not made again.",
 )
 @format_option
-@_output_option
+@study_verb.output_option
 @quiet_option
 def scale(
     tasks: str, seconds: str, kept: Path | None, form: str, output: Path | None, quiet: bool, verbose: bool

@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 _SHORT_HEADERS = {"iterations": "iter."}  # what is wider than its numbers
 _LEAST_SECONDS = 0.01
 
+output_option = click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write the tables (.json, .md, or text)."
+)
+
 
 @click.command(short_help="Repeat a published experiment beside its published numbers.")
 @click.argument("name", required=False)
@@ -37,13 +41,7 @@ _LEAST_SECONDS = 0.01
     "--workers", type=click.IntRange(min=1), metavar="N", help="Processes.  [default: one for each processor]"
 )
 @format_option
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Write the tables (.json, .md, or text).",
-)
+@output_option
 @click.option(
     "--plot", type=click.Path(path_type=Path, file_okay=False), metavar="DIR", help="Draw its figures into a folder."
 )

@@ -86,7 +86,7 @@ def plot_tracking(
     below.set_xlabel("time [s]")
     below.set_ylabel("aside [mm]")
     below.set_ylim(bottom=0.0)
-    _finish(figure, title)
+    finish(figure, title)
     return figure
 
 
@@ -130,7 +130,7 @@ def plot_measures(measures: Sequence[Measure], title: str, columns: int = 4) -> 
         _draw_measure(ax, measure)
     for ax in axes[len(measures) :]:
         ax.remove()
-    _finish(figure, title)
+    finish(figure, title)
     return figure
 
 
@@ -147,7 +147,8 @@ def _draw_measure(ax: Any, measure: Measure) -> None:
 _AT_LEFT: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points"}
 
 
-def _finish(figure: Figure, title: str) -> None:
+def finish(figure: Figure, title: str) -> None:
+    """Give all axes of a figure quiet frames, and the figure its title."""
     for ax in figure.axes:
         quiet_frame(ax)
     figure.suptitle(title, fontsize=10, fontweight="bold", color=TEXT)

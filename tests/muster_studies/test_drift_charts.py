@@ -5,7 +5,11 @@ import pytest
 
 from muster.perception.drift import SETPOINTS, Bias, air_drift, published_flight
 from muster.perception.errors import AirErrors
-from muster_studies.thesis_6_1.drift_charts import plot_drift_from_above, plot_drift_of_coordinate, plot_drift_over_way
+from muster_studies.thesis_6_1.drift_pictures import (
+    plot_drift_from_above,
+    plot_drift_of_coordinate,
+    plot_drift_over_way,
+)
 
 pytest.importorskip("matplotlib")
 NAMES = ("odometry", "inertial", "fixes")

@@ -9,7 +9,7 @@ pytest.importorskip("msgpack", reason="the extra `net` is not installed")
 from muster.cli.main import run as muster
 from muster.model.problem import Problem
 from muster_studies.effort import Effort
-from muster_studies.negotiation.cost import AuctionRun, Cost, hold
+from muster_studies.negotiation.study import AuctionRun, Cost, hold
 from muster_team.negotiators.methods import METHODS
 
 

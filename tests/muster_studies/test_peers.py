@@ -15,11 +15,10 @@ from muster.generation.uniform import large_mission
 from muster.mission.model import OBJECTIVES
 from muster.model.problem import Problem
 from muster_studies.effort import Effort
-from muster_studies.peers import peers_study
 from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, perform, runs_of, standings_of, undisturbed
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer
-from muster_studies.peers.study import Limits
+from muster_studies.peers.study import Limits, peers_study
 from muster_studies.peers.sweep import RUNS, Routed, swept
 from muster_studies.repetition import Repetition
 from muster_studies.tables import Report, Table

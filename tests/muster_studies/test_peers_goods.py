@@ -16,10 +16,16 @@ from muster_studies.effort import Effort
 from muster_studies.instances.charging import CHARGING_REFERENCES, charging_mission
 from muster_studies.instances.goods import GOODS_REFERENCES, goods_instance
 from muster_studies.instances.solomon import REFERENCES, solomon_instance
-from muster_studies.peers import peers_goods_study
 from muster_studies.peers.contest import OWN, PEERS, Result, mission_of
-from muster_studies.peers.goods_tables import CHARGING, CUSTOMERS, LOADS, PEERS_WITH_GOODS, TRANSPORTS
 from muster_studies.peers.instance import Instance
+from muster_studies.peers.timed_studies import (
+    CHARGING,
+    CUSTOMERS,
+    LOADS,
+    PEERS_WITH_GOODS,
+    TRANSPORTS,
+    peers_goods_study,
+)
 
 SECONDS = 0.3
 RULES = Rules(objective="total", return_to_start=True)

@@ -23,14 +23,13 @@ from muster_studies.instances.routing import (
     shorter_plan,
     uniform_tour,
 )
-from muster_studies.peers import peers_routes_study
-from muster_studies.peers.cells import mean_cell, ratio_cell, worst_cell
 from muster_studies.peers.contest import OWN, PEERS, Result, Standing, mission_of
 from muster_studies.peers.instance import Instance
-from muster_studies.peers.routes_tables import FAMILIES
+from muster_studies.peers.study import mean_cell, ratio_cell, worst_cell
+from muster_studies.peers.timed_studies import ROUTES, peers_routes_study
 from muster_studies.tables import Notes
 
-BY_NUMBER = {family.number: family for family in FAMILIES}
+BY_NUMBER = {family.number: family for family in ROUTES}
 TASKS = {"mtsp100": 99, "rand100": 99, "mtsp150": 149, "kroa200": 199, "rat783": 782}
 DEPOTS = {"md2": 200, "md4": 395, "md12": 100, "md24": 400}
 
@@ -120,7 +119,7 @@ def test_generated_missions_are_those_of_their_seed():
 
 
 def test_every_mission_of_the_tables_has_a_name():
-    for family in FAMILIES:
+    for family in ROUTES:
         for name in family.missions:
             assert mission_of(name).tasks
 

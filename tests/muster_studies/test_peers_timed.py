@@ -10,13 +10,11 @@ from muster import Mission, Robot, Rules, Task
 from muster.cli.main import run as cli
 from muster.model.problem import Problem
 from muster_studies.effort import Effort
-from muster_studies.peers import peers_timed_study
 from muster_studies.peers.contest import OWN, PEERS, Match, Result, Run, mission_of, perform, runs_of
 from muster_studies.peers.instance import Instance
-from muster_studies.peers.ordered_table import ORDERED
 from muster_studies.peers.processor_time import ProcessorStop
 from muster_studies.peers.teams_table import SETS, Teams
-from muster_studies.peers.windows_table import Windows
+from muster_studies.peers.timed_studies import ORDERED, WINDOWS, peers_timed_study
 
 SECONDS = 0.15
 
@@ -136,15 +134,15 @@ def result_of(run, value, tasks=100):
 def test_windows_are_told_as_gaps():
     effort = Effort(quick=True, seeds=2)
     values = {OWN: (828.94, 837.2294), "PyVRP": (828.94, 828.94), "OR-Tools": (911.834,), "VROOM": (829.0,)}
-    jobs = Windows().jobs(effort)
+    jobs = WINDOWS.jobs(effort)
     found = {run: result_of(run, values[run.solver][run.seed], 99 if run.solver == "VROOM" else 100) for run in jobs}
-    row, mean = Windows().table(effort, found).records()
+    row, mean = WINDOWS.table(effort, found).records()
     assert row["instance-robots"] == "C101-10"
     assert (row["search"], row["search, worst"]) == (pytest.approx(0.5), pytest.approx(1.0))
     assert (row["PyVRP"], row["OR-Tools"], row["VROOM"]) == (pytest.approx(0), pytest.approx(10), "99 tasks")
     assert mean["search"] is None  # one solver leaves a task out
     found = {run: replace(result, tasks=100) for run, result in found.items()}
-    assert Windows().table(effort, found).records()[1]["OR-Tools"] == pytest.approx(10)
+    assert WINDOWS.table(effort, found).records()[1]["OR-Tools"] == pytest.approx(10)
 
 
 def test_windows_with_prerequisites_are_counted():

@@ -10,9 +10,9 @@ from muster.cli.main import run as cli
 from muster.generation.precedence import SHAPES, precedence_mission
 from muster.model.problem import Problem
 from muster_studies.effort import Effort
-from muster_studies.peers import peers_waiting_study
 from muster_studies.peers.contest import OWN, WAITING_PEER, Match, Result, Run, mission_of, perform
 from muster_studies.peers.instance import Instance
+from muster_studies.peers.timed_studies import peers_waiting_study
 from muster_studies.peers.waiting_table import PEER, Waiting
 
 SECONDS = 1.0

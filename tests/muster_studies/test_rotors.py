@@ -7,7 +7,7 @@ import pytest
 
 from muster_studies.effort import Effort
 from muster_studies.registry import study_named
-from muster_studies.rotors.responses import Response
+from muster_studies.rotors.study import Response
 from muster_studies.tables import CHECK_MARK
 
 if find_spec("mujoco") is None:

@@ -8,9 +8,9 @@ from muster.motion.avoidance import Trajectories
 from muster_studies.benches.avoidance import Scene
 from muster_studies.effort import Effort
 from muster_studies.registry import study_named
-from muster_studies.rvo.results import Found, verdict
 from muster_studies.rvo.runs import METHODS, Job
 from muster_studies.rvo.scenarios import circle, misprints, scenarios
+from muster_studies.rvo.study import Found, verdict
 
 
 @pytest.fixture(scope="module")

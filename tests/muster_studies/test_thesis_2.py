@@ -12,8 +12,7 @@ from muster_studies.registry import study_named
 from muster_studies.runs import Case, perform
 from muster_studies.thesis_2 import diversity, samples
 from muster_studies.thesis_2.diversity import predecessors
-from muster_studies.thesis_2.published import RANKS
-from muster_studies.thesis_2.ranking import _reached_s
+from muster_studies.thesis_2.ranking import RANKS, _reached_s
 
 
 @pytest.fixture(scope="module")

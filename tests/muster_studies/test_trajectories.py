@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from muster_studies.rvo.trajectories import MethodRun, plot_trajectories, plot_velocities
+from muster_studies.rvo.pictures import MethodRun, plot_trajectories, plot_velocities
 
 pytest.importorskip("matplotlib")
 

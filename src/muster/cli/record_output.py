@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from muster.cli.options.common import Verb
+from muster.cli.options.common import grouped
 
 if TYPE_CHECKING:
     from muster.report.record import Recording
@@ -18,22 +18,14 @@ if TYPE_CHECKING:
 _FILE = click.Path(path_type=Path)
 
 
-def drawing_options(verb: Verb) -> Verb:
-    """--html, --plot, --gantt."""
-    options = (
-        click.option("--html", type=_FILE, metavar="FILE", help="Write a page to look at in a browser, offline."),
-        click.option("--plot", type=_FILE, metavar="FILE", help="Draw where the robots went (.png, .svg, .pdf)."),
-        click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what they did when (.png, .svg, .pdf)."),
-    )
-    for option in reversed(options):
-        verb = option(verb)
-    return verb
-
-
-def record_option(verb: Verb) -> Verb:
-    """--record."""
-    option = click.option("--record", type=_FILE, metavar="FILE", help="Write a record (.mcap), for `muster replay`.")
-    return option(verb)
+drawing_options = grouped(
+    click.option("--html", type=_FILE, metavar="FILE", help="Write a page to look at in a browser, offline."),
+    click.option("--plot", type=_FILE, metavar="FILE", help="Draw where the robots went (.png, .svg, .pdf)."),
+    click.option("--gantt", type=_FILE, metavar="FILE", help="Draw what they did when (.png, .svg, .pdf)."),
+)
+record_option = click.option(
+    "--record", type=_FILE, metavar="FILE", help="Write a record (.mcap), for `muster replay`."
+)
 
 
 @contextmanager

@@ -47,7 +47,7 @@ class Recorder(Observer, Protocol):
 
 
 class NoObserver:
-    """Keeps nothing."""
+    """An observer and recorder that keeps nothing."""
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         pass
@@ -56,6 +56,12 @@ class NoObserver:
         pass
 
     def on_plan(self, now: float, plan: Plan) -> None:
+        pass
+
+    def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
+        pass
+
+    def on_report(self, report: dict[str, Any]) -> None:
         pass
 
 

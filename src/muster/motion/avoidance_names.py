@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from muster.mission.errors import ParameterError
-from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.keywords import require_one_of
 
 AUTO, NONE = "auto", "none"
 """The method that gets all done soonest in simulated worlds (docs/avoidance.md): `hrvo` in the plane, else `orca`."""
@@ -19,10 +19,7 @@ def require_avoidance(avoidance: str, dimensions: int) -> None:
     ------
     ParameterError
     """
-    if avoidance not in AVOIDANCE:
-        raise ParameterError(
-            f"avoidance: {avoidance}; expected {', '.join(AVOIDANCE)}{did_you_mean(avoidance, AVOIDANCE)}"
-        )
+    require_one_of("avoidance", avoidance, AVOIDANCE)
     if avoidance in _IN_THE_PLANE and dimensions == 3:
         raise ParameterError(f"avoidance: {avoidance}; expected orca or none: the mission is in space")
 

@@ -22,9 +22,8 @@ from typing import Protocol
 
 import numpy as np
 
-from muster.mission.errors import ParameterError
-from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.values.arrays import Floats
+from muster.mission.values.keywords import require_one_of
 from muster.mission.values.ranges import require_finite_positive
 from muster.motion.kinematics.kinematics import Kinematics, approach
 from muster.motion.limits import Limits
@@ -221,8 +220,7 @@ def follow(
     ParameterError
         for another law, or a number that is not above 0.
     """
-    if law not in GUIDANCE:
-        raise ParameterError(f"guidance: {law}; expected {', '.join(GUIDANCE)}{did_you_mean(law, GUIDANCE)}")
+    require_one_of("guidance", law, GUIDANCE)
     require_finite_positive(lookahead_m=lookahead_m, dt=dt, arrival_m=arrival_m)
     line = Line(path)
     if line.length_m == 0:

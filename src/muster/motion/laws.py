@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from muster.mission.errors import ParameterError
-from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.keywords import require_one_of
 
 PROFILE, THESIS, TRAJECTORY = LAWS = ("profile", "thesis", "trajectory")
 
 
 def require_law(law: str) -> None:
     """Raise ParameterError unless there is a law of that name."""
-    if law not in LAWS:
-        raise ParameterError(f"law: {law}; expected {', '.join(LAWS)}{did_you_mean(law, LAWS)}")
+    require_one_of("law", law, LAWS)

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
-
-Floats = npt.NDArray[np.float64]
+from muster.mission.values.arrays import Floats
 
 
 @dataclass(frozen=True)

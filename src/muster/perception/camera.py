@@ -24,9 +24,8 @@ import numpy.typing as npt
 
 from muster.mission import model
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.motion.frames import inverse, moved, pose_transform
-
-Floats = npt.NDArray[np.float64]
 
 _RIGHT_ANGLED = 1e-6
 """How far from right angles and from length 1 the axes of a pose may be."""

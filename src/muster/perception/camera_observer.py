@@ -12,7 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
-from muster.perception.camera import Floats, Intrinsics, View
+from muster.mission.values.arrays import Floats
+from muster.perception.camera import Intrinsics, View
 from muster.perception.cameras.images import Image
 from muster.perception.detection import Sightings, TagDetector
 from muster.perception.estimates import RawEstimates

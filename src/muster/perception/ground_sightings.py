@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from muster.perception.camera import Floats, Intrinsics, View
+from muster.mission.values.arrays import Floats
+from muster.perception.camera import Intrinsics, View
 from muster.perception.dead_reckoning import Seen
 from muster.perception.detection import Sighting
 from muster.perception.localisation import Uncertainty, by_turns, ground_covariance, on_ground

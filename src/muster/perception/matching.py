@@ -13,9 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.perception.optional_parts import require_physics
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -12,18 +12,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.motion.grid import Bools, Floats, Grid, Indices
+from muster.perception.counted_map import CountedMap, Counts, are_occupied
 from muster.perception.laser import Scanner
 
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-Counts = npt.NDArray[np.int32]
-
-OCCUPIED_SHARE = 0.1
-"""Share of the scans of a cell that end in it from which the cell is occupied."""
 _INSIDE = 1e-6
 """Metres behind the point that is hit at which its cell is looked up: what is hit lies behind the face."""
 
@@ -53,8 +49,8 @@ class Scan:
 
 
 @dataclass(eq=False)
-class OccupancyMap:
-    """What lasers have measured of the cells of a frame.
+class OccupancyMap(CountedMap):
+    """What lasers have measured of the cells of a frame. See `CountedMap` for its attributes.
 
     Parameters
     ----------
@@ -65,41 +61,17 @@ class OccupancyMap:
     fills_cells : bool
         Whether obstacles are known to fill cells of this frame, as those of an image do.
 
-    Attributes
-    ----------
-    hits, passes : ndarray
-        How many beams ended in each cell; how many scans passed it.
-    occupied : ndarray of bool
-        Which cells hold an obstacle, as far as they were seen.
-    near : ndarray of bool
-        Which cells were seen from as near as was said to count.
-    clearances : ndarray
-        From the centre of each cell to the nearest point that was hit, or, where obstacles fill cells, between the
-        squares of both; metres, inf beyond `clearance_m`.
+    Clearances are in metres; where obstacles fill cells, they are between the squares of both.
     """
 
     frame: Grid
     clearance_m: float
     fills_cells: bool = False
-    hits: Counts = field(init=False)
-    passes: Counts = field(init=False)
-    occupied: Bools = field(init=False)
-    near: Bools = field(init=False)
-    clearances: npt.NDArray[np.float32] = field(init=False)
     _sums: Floats = field(init=False)
 
     def __post_init__(self) -> None:
-        shape = self.frame.shape
-        self.hits, self.passes = np.zeros(shape, dtype=np.int32), np.zeros(shape, dtype=np.int32)
-        self.occupied, self.near = np.zeros(shape, dtype=np.bool_), np.zeros(shape, dtype=np.bool_)
-        self._sums = np.zeros((*shape, 2))
-        self.clearances = np.full(shape, np.inf, dtype=np.float32)
-
-    @property
-    def known(self) -> Bools:
-        """Return which cells were seen at all."""
-        known: Bools = (self.hits > 0) | (self.passes > 0)
-        return known
+        self._make_empty(self.frame.shape)
+        self._sums = np.zeros((*self.frame.shape, 2))
 
     def see(self, scan: Scan, scanner: Scanner, near_m: float = 0.0, *, passes: bool = True) -> tuple[Indices, bool]:
         """Enter a scan; cells that it sees within `near_m` count as near. Without `passes` only its hits count.
@@ -160,12 +132,6 @@ class OccupancyMap:
         rows, columns = (np.arange(n) + 0.5 for n in self.frame.shape)
         within = np.hypot(rows[:, None] - row, columns - column) <= cells
         self.near |= within & self.known
-
-    def require_clearance(self, clearance_m: float) -> None:
-        """Keep clearances up to this distance at least, from now on."""
-        if clearance_m > self.clearance_m:
-            self.clearance_m = clearance_m
-            self._keep_off(np.argwhere(self.occupied))
 
     def points_in(self, cells: Indices) -> Floats:
         """Return the mean points hit, (n, 2) metres in the map frame, in cells (n, 2) of rows and columns.
@@ -275,12 +241,6 @@ class OccupancyMap:
         freed[freed] = ~are_occupied(self.hits[part][freed], self.passes[part][freed])
         self.occupied[part] &= ~freed
         return bool(freed.any())
-
-
-def are_occupied(hits: Counts, passes: Counts) -> Bools:
-    """Return which cells are occupied, by how many beams ended in them and how many scans passed them."""
-    occupied: Bools = (hits > 0) & (hits >= OCCUPIED_SHARE * (hits + passes))
-    return occupied
 
 
 def _between(place: float, ends: Floats, most: int) -> tuple[int, int]:

@@ -18,11 +18,11 @@ import numpy as np
 from muster.mission.model import Mission
 from muster.motion.grid import Bools, Floats, Indices
 from muster.motion.map_world import Body, World, body_of
+from muster.perception.counted_map import packed, unpack
 from muster.perception.explored_air import ExploredAir, air_to_build
 from muster.perception.explored_ground import CERTAIN, ExploredGround, frame_of, map_to_build, ruled_world
 from muster.perception.laser import Scanner
 from muster.perception.occupancy_map import Scan
-from muster.perception.packed_map import packed, unpack
 from muster.perception.robot_grids import SeenCells
 from muster.perception.sphere_scanner import SphereScanner
 from muster.perception.voxel_map import SpaceScan

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from muster.motion.grid import Bools, Floats, Indices
 from muster.motion.voxels import VoxelFrame, lower_clearances, passed_voxels
-from muster.perception.occupancy_map import Counts, are_occupied
+from muster.perception.counted_map import CountedMap, Counts, are_occupied
 from muster.perception.sphere_scanner import SphereScanner
 
 if TYPE_CHECKING:
@@ -54,8 +54,8 @@ class SpaceScan:
 
 
 @dataclass(eq=False)
-class VoxelMap:
-    """What lidars have measured of the voxels of a frame.
+class VoxelMap(CountedMap):
+    """What lidars have measured of the voxels of a frame. See `CountedMap` for its attributes.
 
     Parameters
     ----------
@@ -64,40 +64,17 @@ class VoxelMap:
     clearance_m : float
         The greatest clearance of interest.
 
-    Attributes
-    ----------
-    hits, passes : ndarray
-        How many beams ended in each voxel; how many scans passed it.
-    occupied : ndarray of bool
-        Which voxels hold an obstacle, as far as they were seen.
-    near : ndarray of bool
-        Which voxels were seen from near; it is on the ground that this counts.
-    clearances : ndarray
-        From the centre of each voxel to the nearest point that was hit, in voxels; inf beyond `clearance_m`.
+    Clearances are in voxels. Which voxels were seen from near counts on the ground only.
     """
 
     frame: VoxelFrame
     clearance_m: float
-    hits: Counts = field(init=False)
-    passes: Counts = field(init=False)
-    occupied: Bools = field(init=False)
-    near: Bools = field(init=False)
-    clearances: npt.NDArray[np.float32] = field(init=False)
     _sums: npt.NDArray[np.float32] = field(init=False)
     _tree: KDTree | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
-        shape = self.frame.shape
-        self.hits, self.passes = np.zeros(shape, dtype=np.int32), np.zeros(shape, dtype=np.int32)
-        self.occupied, self.near = np.zeros(shape, dtype=np.bool_), np.zeros(shape, dtype=np.bool_)
-        self._sums = np.zeros((*shape, 3), dtype=np.float32)
-        self.clearances = np.full(shape, np.inf, dtype=np.float32)
-
-    @property
-    def known(self) -> Bools:
-        """Return which voxels were seen at all."""
-        known: Bools = (self.hits > 0) | (self.passes > 0)
-        return known
+        self._make_empty(self.frame.shape)
+        self._sums = np.zeros((*self.frame.shape, 3), dtype=np.float32)
 
     def see(self, scan: SpaceScan, scanner: SphereScanner) -> tuple[Floats, bool]:
         """Enter a scan; return the points (n, 3) of voxels that are newly occupied, and whether obstacles changed."""
@@ -121,12 +98,6 @@ class VoxelMap:
         if changed:
             self._tree = None
         return self.points_in(cells), changed
-
-    def require_clearance(self, clearance_m: float) -> None:
-        """Keep clearances up to this distance at least, from now on."""
-        if clearance_m > self.clearance_m:
-            self.clearance_m = clearance_m
-            self._keep_off(np.argwhere(self.occupied))
 
     def points_in(self, voxels: Indices) -> Floats:
         """Return the mean points hit (n, 3), metres in the map frame, in voxels (n, 3) of layer, row, column."""

@@ -6,10 +6,10 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from muster.mission.errors import MissionError, ParameterError
+from muster.mission.errors import MissionError
 from muster.mission.import_ledger import Ledger, summary_lines
 from muster.mission.model import Mission
-from muster.mission.system.plugins import Registry, require_words
+from muster.mission.system.plugins import Registry, instance_expected, require_words
 
 FLAGS = ("robots", "suitability", "salesmen", "depot", "columns", "origin")
 """The parameters of `load_noted` that go with some kinds of files."""
@@ -65,13 +65,9 @@ class MissionReader:
         require_words("flags", self.flags, FLAGS)
 
 
-def _checked(_: str, found: object) -> MissionReader:
-    if not isinstance(found, MissionReader):
-        raise ParameterError(f"it is a {type(found).__name__}; expected a MissionReader")
-    return found
-
-
-MISSION_READERS: Registry[MissionReader] = Registry("mission reader", "muster.mission_readers", _checked)
+MISSION_READERS: Registry[MissionReader] = Registry(
+    "mission reader", "muster.mission_readers", instance_expected(MissionReader)
+)
 
 
 def reader_of(path: Path) -> MissionReader | None:

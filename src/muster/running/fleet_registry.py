@@ -5,23 +5,17 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING, Any
 
-from muster.mission.errors import ParameterError
 from muster.mission.records import Settings
-from muster.mission.system.plugins import Registry, require_own_name
+from muster.mission.system.plugins import Registry, instance_expected
 from muster.running.fleet_type import FleetType, Opened
 
 if TYPE_CHECKING:
     from muster.mission.model import Mission
 
 
-def _checked(name: str, found: object) -> FleetType:
-    if not isinstance(found, FleetType):
-        raise ParameterError(f"it is a {type(found).__name__}; expected a muster.running.fleet_type.FleetType")
-    require_own_name(name, found.name)
-    return found
-
-
-FLEETS: Registry[FleetType] = Registry("fleet", "muster.fleets", _checked)
+FLEETS: Registry[FleetType] = Registry(
+    "fleet", "muster.fleets", instance_expected(FleetType, "a muster.running.fleet_type.FleetType")
+)
 
 
 def settings_class(fleet: str) -> type[Settings]:

@@ -187,9 +187,7 @@ async def mission(
     services: TheServices, mission: MissionId, response: Response, version: OptionalVersion = None
 ) -> MissionText:
     """Its text, and the names and sizes of its files."""
-    found = await services.missions.get(mission, version)
-    response.headers["ETag"] = _etag(found)
-    return _text(found)
+    return _tagged(response, await services.missions.get(mission, version))
 
 
 @router.put(
@@ -210,9 +208,7 @@ async def save(
     If-Match or `base_version` must name the version that it is based on; if there is a newer one the answer is 409.
     """
     base = _base(if_match, body.base_version)
-    saved = await services.missions.save(who, mission, body.text, base, body.files, body.note)
-    response.headers["ETag"] = _etag(saved)
-    return _text(saved)
+    return _tagged(response, await services.missions.save(who, mission, body.text, base, body.files, body.note))
 
 
 @router.delete("/{mission}", status_code=204, summary="Delete a mission", responses=errors(409))
@@ -275,8 +271,7 @@ async def put_file(
     base, data = _base(if_match, base_version), await request.body()
     found = await services.missions.get(mission, base)
     saved = await services.missions.save(who, mission, found.text, base, {**found.files, name: data}, f"file {name}")
-    response.headers["ETag"] = _etag(saved)
-    return _text(saved)
+    return _tagged(response, saved)
 
 
 def _base(if_match: str | None, base_version: int | None) -> int:
@@ -289,8 +284,13 @@ def _base(if_match: str | None, base_version: int | None) -> int:
 
 def _made(response: Response, made: MissionVersion) -> MissionText:
     response.headers["Location"] = f"/api/v1/missions/{made.mission}"
-    response.headers["ETag"] = _etag(made)
-    return _text(made)
+    return _tagged(response, made)
+
+
+def _tagged(response: Response, version: MissionVersion) -> MissionText:
+    """A version of a mission, whose number stands in the head of the answer as its ETag."""
+    response.headers["ETag"] = f'"{version.version}"'
+    return _text(version)
 
 
 def _text(version: MissionVersion) -> MissionText:
@@ -298,10 +298,6 @@ def _text(version: MissionVersion) -> MissionText:
     given = asdict(replace(version, files={}))
     sizes = {name: len(data) for name, data in version.files.items()}
     return MissionText(id=given.pop("mission"), **given | {"files": sizes})
-
-
-def _etag(version: MissionVersion) -> str:
-    return f'"{version.version}"'
 
 
 def _base_name(name: str | None) -> str:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, TypeVar
 
 import click
 
@@ -13,7 +11,6 @@ from muster.cli.exits import DONE
 from muster.cli.options.common import Finite, format_option, quiet_option
 from muster.mission.system.platforms import require_posix
 
-Verb = TypeVar("Verb", bound=Callable[..., Any])
 _FILE = click.Path(path_type=Path, dir_okay=False)
 
 
@@ -23,15 +20,14 @@ def _database(_: click.Context, __: click.Parameter, value: str | None) -> str:
     return value or usual_database()
 
 
-def _db_option(verb: Verb) -> Verb:
-    return click.option(
-        "--db",
-        "url",
-        envvar="MUSTER_DB",
-        callback=_database,
-        metavar="URL",
-        help="sqlite:///FILE or postgresql://USER@HOST/NAME; also MUSTER_DB.  [default: a file of yours]",
-    )(verb)
+_db_option = click.option(
+    "--db",
+    "url",
+    envvar="MUSTER_DB",
+    callback=_database,
+    metavar="URL",
+    help="sqlite:///FILE or postgresql://USER@HOST/NAME; also MUSTER_DB.  [default: a file of yours]",
+)
 
 
 @click.group()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from muster.mission.errors import MusterError
 from muster.mission.model import Task
@@ -20,10 +20,18 @@ if TYPE_CHECKING:
 _FIRST_LOOK_S, _LONGEST_LOOK_S = 0.02, 0.5
 
 
-class RunningJob:
-    """A job at a server; `seen` is its last known state."""
+Seen = TypeVar("Seen", Job, Run)
 
-    def __init__(self, connection: Connection, seen: Job) -> None:
+
+class Handle(Generic[Seen]):
+    """A job or a run at a server; `seen` is its last known state."""
+
+    seen: Seen
+    _kind: type[Seen]
+    _at: ClassVar[str]
+    _over: ClassVar[tuple[str, ...]]
+
+    def __init__(self, connection: Connection, seen: Seen) -> None:
         self._connection = connection
         self.seen = seen
 
@@ -34,12 +42,22 @@ class RunningJob:
     @property
     def over(self) -> bool:
         """Whether it has ended."""
-        return self.seen.state in JOB_OVER
+        return self.seen.state in self._over
 
-    def look(self) -> Job:
+    def look(self) -> Seen:
         """Ask the server for its state."""
-        self.seen = read(Job, self._connection.get(f"/jobs/{self.id}"))
+        return self._note(self._connection.get(f"{self._at}/{self.id}"))
+
+    def _note(self, data: Any) -> Seen:
+        self.seen = read(self._kind, data)
         return self.seen
+
+
+class RunningJob(Handle[Job]):
+    """A job at a server; `seen` is its last known state."""
+
+    _kind = Job
+    _at, _over = "/jobs", JOB_OVER
 
     def wait(
         self,
@@ -77,40 +95,22 @@ class RunningJob:
     def stream(self) -> Iterator[Job]:
         """Yield each change of state until it has ended."""
         for message in self._connection.stream(f"/jobs/{self.id}/stream"):
-            self.seen = read(Job, message)
-            yield self.seen
+            yield self._note(message)
 
     def stop(self) -> Job:
         """End planning with the best plan so far; a job that has not begun is cancelled."""
-        self.seen = read(Job, self._connection.post(f"/jobs/{self.id}/stop", {}))
-        return self.seen
+        return self._note(self._connection.post(f"/jobs/{self.id}/stop", {}))
 
     def cancel(self) -> Job:
         """Cancel it; there is no plan then."""
-        self.seen = read(Job, self._connection.delete(f"/jobs/{self.id}"))
-        return self.seen
+        return self._note(self._connection.delete(f"/jobs/{self.id}"))
 
 
-class RunningRun:
+class RunningRun(Handle[Run]):
     """A run at a server; `seen` is its last known state."""
 
-    def __init__(self, connection: Connection, seen: Run) -> None:
-        self._connection = connection
-        self.seen = seen
-
-    @property
-    def id(self) -> int:
-        return self.seen.id
-
-    @property
-    def over(self) -> bool:
-        """Whether it has ended."""
-        return self.seen.state in OVER
-
-    def look(self) -> Run:
-        """Ask the server for its state."""
-        self.seen = read(Run, self._connection.get(f"/runs/{self.id}"))
-        return self.seen
+    _kind = Run
+    _at, _over = "/runs", OVER
 
     def wait(self) -> Run:
         """Wait for its end; returns its last state."""

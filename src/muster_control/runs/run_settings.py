@@ -10,8 +10,8 @@ from typing import Any
 from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan
 from muster.mission.reading.order_files import OF_TASKS
-from muster.mission.texts.near_matches import did_you_mean
 from muster.mission.value_types import shown
+from muster.mission.values.keywords import require_one_of
 from muster.running.fleet_registry import FLEETS
 from muster.running.run_request import RunRequest
 from muster.running.worlds import WORLDS
@@ -59,11 +59,6 @@ def request_of(world: str, settings: Mapping[str, Any], plan: Plan) -> RunReques
     return replace(request, ignore=plan.ignored, planning=checked_options(settings.get("planning", {})))
 
 
-def _require_choice(name: str, value: str, allowed: Sequence[str]) -> None:
-    if value not in allowed:
-        raise ParameterError(f"{name}: {value}; expected {', '.join(allowed)}{did_you_mean(value, allowed)}")
-
-
 def require_speed(speed: object) -> float | None:
     """A speed: a number above 0, or None, as fast as it goes."""
     if speed is None:
@@ -91,7 +86,7 @@ def require_action(verb: str, data: Mapping[str, Any]) -> dict[str, Any]:
     ParameterError
         if the verb or its data are wrong. The runner checks whether an event fits the mission.
     """
-    _require_choice("verb", verb, VERBS)
+    require_one_of("verb", verb, VERBS)
     _require_text(data)
     if verb == "speed":
         if set(data) != {"speed"}:

@@ -14,8 +14,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from muster.mission.errors import ParameterError
-from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.keywords import require_one_of
 from muster_control.contract import OVER, ConflictError
 from muster_control.runs.records.record_files import LOG, TRACKS
 from muster_control.work.pool import Pool
@@ -66,8 +65,7 @@ class Records:
         WorkError
             if the format needs the mission's place on the earth, and the mission has none.
         """
-        if to not in FORMATS:
-            raise ParameterError(f"to: {to}; expected {', '.join(FORMATS)}{did_you_mean(to, FORMATS)}")
+        require_one_of("to", to, FORMATS)
         files: Mapping[str, str] = (await self._made(run, to))["files"]
         return files
 

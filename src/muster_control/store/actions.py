@@ -15,7 +15,7 @@ from typing import Any
 from sqlalchemy import Connection, select, update
 
 from muster_control.contract import PAGE_ROWS, Action, NotFoundError, User
-from muster_control.store.database import Database, insert_of, newest
+from muster_control.store.database import DatabaseTable, insert_of, newest
 from muster_control.store.schema import actions
 
 _1970 = datetime(1970, 1, 1, tzinfo=UTC)
@@ -55,10 +55,7 @@ def id_at(at: datetime) -> int:
     return (at - _1970) // timedelta(microseconds=1)
 
 
-class ActionTable:
-    def __init__(self, database: Database) -> None:
-        self._database = database
-
+class ActionTable(DatabaseTable):
     def add(self, who: User, verb: str, data: Mapping[str, Any], run: int | None = None, outcome: str = "") -> Action:
         """Add an action of now."""
         action = new_action(who, verb, data, run, outcome)
@@ -87,14 +84,12 @@ class ActionTable:
     def unsettled(self, run: int) -> list[Action]:
         """Actions of a run without an outcome, oldest first."""
         query = select(actions).where(actions.c.run == run, actions.c.outcome == "").order_by(actions.c.id)
-        with self._database.reading() as connection:
-            return [Action(**row._mapping) for row in connection.execute(query)]
+        return self._read_all(Action, query)
 
     def list(self, run: int | None = None, limit: int = PAGE_ROWS, before: int | None = None) -> list[Action]:
         """Actions of one run or of all, newest first; only ids below `before`, if given."""
         query = newest(select(actions), actions, limit, before, run=run)
-        with self._database.reading() as connection:
-            return [Action(**row._mapping) for row in connection.execute(query)]
+        return self._read_all(Action, query)
 
 
 def keep_actions(connection: Connection, given: Sequence[Action]) -> None:

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Lock
-from typing import Any
+from typing import Any, TypeVar
 
 from sqlalchemy import Connection, Engine, Select, Table, create_engine, event
 from sqlalchemy.exc import SQLAlchemyError
@@ -22,6 +22,8 @@ from muster_control.contract import StoreError
 from muster_control.store.columns import as_json
 from muster_control.store.failures import store_error
 from muster_control.store.urls import database_url, shown, sqlite_file
+
+T = TypeVar("T")
 
 _PATIENCE_S = 10
 _NEVER_FOR_EVER = {
@@ -102,6 +104,18 @@ class Database:
         except SQLAlchemyError as error:
             self.failures += 1
             raise store_error(error, self.name) from None
+
+
+class DatabaseTable:
+    """What one table of a database answers and changes; each method is a transaction."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def _read_all(self, entry: Callable[..., T], query: Select[Any]) -> list[T]:
+        """Return what a query finds, as entries made of the values of a row by column."""
+        with self._database.reading() as connection:
+            return [entry(**row._mapping) for row in connection.execute(query)]
 
 
 def newest(query: Select[Any], table: Table, limit: int, before: int | None, **equal: object) -> Select[Any]:

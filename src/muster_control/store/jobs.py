@@ -9,16 +9,13 @@ from typing import Any
 from sqlalchemy import Connection, insert, select, update
 
 from muster_control.contract import PAGE_ROWS, ConflictError, Job, JobState, NotFoundError
-from muster_control.store.database import Database, newest
+from muster_control.store.database import DatabaseTable, newest
 from muster_control.store.plans import add_plan
 from muster_control.store.request_keys import RequestKey, keyed
 from muster_control.store.schema import jobs
 
 
-class JobTable:
-    def __init__(self, database: Database) -> None:
-        self._database = database
-
+class JobTable(DatabaseTable):
     def add(
         self,
         kind: str,
@@ -131,8 +128,7 @@ class JobTable:
     ) -> list[Job]:
         """Jobs of one state and mission or of all, newest first; with ids below `before`, if given."""
         query = newest(select(jobs), jobs, limit, before, state=state, mission=mission)
-        with self._database.reading() as connection:
-            return [Job(**row._mapping) for row in connection.execute(query)]
+        return self._read_all(Job, query)
 
 
 def _move(connection: Connection, job: int, states: tuple[JobState, ...], **values: Any) -> Job:

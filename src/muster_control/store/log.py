@@ -17,7 +17,7 @@ from sqlalchemy import Connection, Row, Table, delete, func, insert, select, upd
 from muster.mission.errors import ParameterError
 from muster_control.contract import Checkpoint, ConflictError, Entry, NotFoundError, Stretch
 from muster_control.store.columns import as_json
-from muster_control.store.database import Database
+from muster_control.store.database import Database, DatabaseTable
 from muster_control.store.schema import bodies as body_table
 from muster_control.store.schema import checkpoints, runs
 from muster_control.store.schema import entries as entry_table
@@ -30,9 +30,9 @@ _KEPT = 2
 Item = TypeVar("Item", Entry, Stretch)
 
 
-class LogTable:
+class LogTable(DatabaseTable):
     def __init__(self, database: Database) -> None:
-        self._database = database
+        super().__init__(database)
         self.observe: Callable[[float], None] = lambda seconds: None
         """Receives the seconds of each `append`, also of one that failed."""
 
@@ -118,8 +118,7 @@ class LogTable:
     def entries(self, run: int, after: int = 0, limit: int | None = None) -> list[Entry]:
         """Entries with a `seq` above `after`, in order."""
         query = select(entry_table).where(entry_table.c.run == run, entry_table.c.seq > after)
-        with self._database.reading() as connection:
-            return [Entry(**row._mapping) for row in connection.execute(query.order_by(entry_table.c.seq).limit(limit))]
+        return self._read_all(Entry, query.order_by(entry_table.c.seq).limit(limit))
 
     def all_entries(self, run: int) -> Iterator[Entry]:
         """All entries in order, read in portions, so that few are in memory at once."""

@@ -20,16 +20,13 @@ from muster_control.contract import (
     NotFoundError,
     VersionEntry,
 )
-from muster_control.store.database import Database, insert_unless_there
+from muster_control.store.database import DatabaseTable, insert_unless_there
 from muster_control.store.schema import blobs, mission_files, mission_versions, missions
 
 _LONGEST_ID = 80
 
 
-class MissionTable:
-    def __init__(self, database: Database) -> None:
-        self._database = database
-
+class MissionTable(DatabaseTable):
     def get(self, mission: str, version: int | None = None) -> MissionVersion:
         """A version with its files, by default the newest; of a deleted mission only by number.
 

@@ -9,16 +9,13 @@ from typing import Any, Literal
 from sqlalchemy import Connection, Row, func, insert, select
 
 from muster_control.contract import MOST_ROWS, PAGE_ROWS, NotFoundError, PlanEntry
-from muster_control.store.database import Database, newest
+from muster_control.store.database import DatabaseTable, newest
 from muster_control.store.schema import missions, plans
 
 _BODY = frozenset({"routes", "unassigned", "history", "book"})
 
 
-class PlanTable:
-    def __init__(self, database: Database) -> None:
-        self._database = database
-
+class PlanTable(DatabaseTable):
     def add(
         self,
         mission: str,

@@ -10,7 +10,7 @@ from datetime import UTC, datetime, timedelta
 from sqlalchemy import ColumnElement, Connection, delete, select, update
 
 from muster_control.contract import ConflictError
-from muster_control.store.database import Database, insert_unless_there
+from muster_control.store.database import DatabaseTable, insert_unless_there
 from muster_control.store.schema import request_keys
 
 KEPT = timedelta(days=1)
@@ -34,10 +34,7 @@ class RepeatedRequestError(Exception):
         self.made = made
 
 
-class RequestKeyTable:
-    def __init__(self, database: Database) -> None:
-        self._database = database
-
+class RequestKeyTable(DatabaseTable):
     def require_new(self, request: RequestKey) -> None:
         """Look whether a request came before.
 

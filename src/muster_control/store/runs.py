@@ -10,7 +10,7 @@ from sqlalchemy import Connection, insert, select, update
 
 from muster_control.contract import OVER, PAGE_ROWS, ConflictError, NotFoundError, Run, RunState, User, World
 from muster_control.store.actions import keep_actions, new_action
-from muster_control.store.database import Database, newest
+from muster_control.store.database import DatabaseTable, newest
 from muster_control.store.request_keys import RequestKey, keyed
 from muster_control.store.schema import runs
 
@@ -18,10 +18,7 @@ _UNDER_WAY = tuple(state for state in get_args(RunState) if state not in OVER)
 _CHANGEABLE = frozenset({"state", "speed", "time_s", "remark", "resumed", "ended_at"})
 
 
-class RunTable:
-    def __init__(self, database: Database) -> None:
-        self._database = database
-
+class RunTable(DatabaseTable):
     def add(
         self,
         mission: str,
@@ -77,8 +74,7 @@ class RunTable:
     def unfinished(self) -> list[Run]:
         """Runs that are not over, the oldest first."""
         query = select(runs).where(runs.c.state.not_in(OVER)).order_by(runs.c.id)
-        with self._database.reading() as connection:
-            return [Run(**row._mapping) for row in connection.execute(query)]
+        return self._read_all(Run, query)
 
     def set(self, run: int, **fields: Any) -> Run:
         """Change `state`, `speed`, `time_s`, `remark`, `resumed` or `ended_at`.
@@ -113,8 +109,7 @@ class RunTable:
         query = newest(select(runs), runs, limit, before, mission=mission)
         if over:
             query = query.where(runs.c.state.not_in(_UNDER_WAY))  # most are over: the ids are read, no index of states
-        with self._database.reading() as connection:
-            return [Run(**row._mapping) for row in connection.execute(query)]
+        return self._read_all(Run, query)
 
 
 def _get(connection: Connection, run: int, *, to_write: bool = False) -> Run:

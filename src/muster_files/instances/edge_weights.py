@@ -6,9 +6,8 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from muster.mission.values.arrays import Floats
 
 _EARTH_RADIUS_KM = 6378.388
 _PI = 3.141592

@@ -11,15 +11,8 @@ import numpy as np
 from muster.mission.errors import Finding, MissionError
 from muster.mission.site import Point, TravelTable
 from muster.mission.value_types import shown
-from muster_files.instances.edge_weights import (
-    COORDINATES,
-    EXPLICIT,
-    LAYOUTS,
-    Floats,
-    matrix_of,
-    numbers_in,
-    weights_of,
-)
+from muster.mission.values.arrays import Floats
+from muster_files.instances.edge_weights import COORDINATES, EXPLICIT, LAYOUTS, matrix_of, numbers_in, weights_of
 from muster_files.instances.keyword_files import KeywordFile
 from muster_files.number_rows import is_whole, node_number, read_row, row_numbers
 

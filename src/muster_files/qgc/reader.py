@@ -3,14 +3,20 @@
 A way point's hold is the task's duration, a survey an area to cover. The order of way points is not kept, since Muster
 plans it anew; rounds of a jump follow each other. Way points of take-off, landing and return to launch give the end
 position. Fences become the map.
+
+The vehicles of plan files (MAV_TYPE): where they move, and which speed of the plan is theirs.
+
+Source: MAVLink, `common.xml`; QGroundControl developer guide, "Plan File Format": `hoverSpeed` is of multi-rotors,
+`cruiseSpeed` of fixed wings, rovers and boats.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from muster.mission.errors import Finding, MissionError
 from muster.mission.import_ledger import EMPTY, Fate, LedgerBook, passed_over
@@ -24,9 +30,37 @@ from muster_files.qgc.fields import Degrees, PlanFields
 from muster_files.qgc.flight import Command, Flight, flight_of, require_near
 from muster_files.qgc.flight_missions import FlownFile, mission_of
 from muster_files.qgc.survey_reader import Survey, read_survey
-from muster_files.qgc.vehicles import EXPECTED, VEHICLES, Vehicle, told_vehicle
 from muster_files.sites.file_sizes import require_moderate_json
 from muster_files.tracked_json import Tracked, enter_json, parse_tracked
+
+_HOVER, _CRUISE = ("hoverSpeed",), ("cruiseSpeed",)
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """A type of vehicle: where it moves, its speeds in a plan, of which the slowest is taken, and what is not kept."""
+
+    kind: Literal["ground", "air"]
+    speeds: tuple[str, ...]
+    note: str = ""
+
+
+_WINGED = "a fixed wing: here it stops at every stop, and flies straight between them"
+_VTOL = "a VTOL: here it stops at every stop, at the slower of hoverSpeed and cruiseSpeed"
+VEHICLES = {
+    **dict.fromkeys((0, qgc.QUADROTOR, 3, 4, 13, 14, 15, 29, 35, 43), Vehicle("air", _HOVER)),
+    1: Vehicle("air", _CRUISE, _WINGED),
+    **dict.fromkeys((*range(19, 26), 47), Vehicle("air", (*_HOVER, *_CRUISE), _VTOL)),
+    **dict.fromkeys((qgc.GROUND_ROVER, 11, 46), Vehicle("ground", _CRUISE)),
+}
+_NAMED = {5: "ANTENNA_TRACKER", 6: "GCS", 7: "AIRSHIP", 8: "FREE_BALLOON", 9: "ROCKET", 12: "SUBMARINE"}
+EXPECTED = "a copter, a fixed wing, a VTOL, a rover or a boat"
+
+
+def told_vehicle(number: object) -> str:
+    """Return a type as errors name it: `MAV_TYPE_SUBMARINE (12)`."""
+    return f"MAV_TYPE_{_NAMED[number]} ({number})" if isinstance(number, int) and number in _NAMED else str(number)
+
 
 _TWICE = passed_over("stands in the parameters too", minor=True)
 _RALLY = passed_over("is a point to go to in an emergency: Muster's drones return or land")

@@ -20,9 +20,10 @@ from muster import core
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.stop import Stop
+from muster.mission.values.arrays import Floats
 from muster.mission.values.ranges import require_counts, require_within
 from muster.model.problem import Problem
-from muster_studies.alternatives.strings import Best, Floats
+from muster_studies.alternatives.strings import Best
 
 _LEAST_PHEROMONE = 1e-9  # beside 1 at the beginning: no path is lost to rounding
 

@@ -17,8 +17,9 @@ from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.auctions.auction_terms import BidTerms
 from muster.allocation.auctions.auctioneer import Auctioneer, OnRound
 from muster.allocation.auctions.book_keeper import held
-from muster.allocation.auctions.winners import Floats, Sale
+from muster.allocation.auctions.winners import Sale
 from muster.allocation.stop import Stop
+from muster.mission.values.arrays import Floats
 from muster.mission.values.ranges import require_within
 from muster.model.problem import Problem
 from muster_studies.alternatives.assignment_prices import assign

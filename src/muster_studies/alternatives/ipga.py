@@ -17,9 +17,10 @@ from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.mission.values.ranges import require_counts
 from muster.model.problem import Problem
-from muster_studies.alternatives.strings import Decoded, Floats, Strings, random_strings, ranking, string_of
+from muster_studies.alternatives.strings import Decoded, Strings, random_strings, ranking, string_of
 
 
 @dataclass(frozen=True, kw_only=True)

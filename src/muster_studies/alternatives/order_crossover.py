@@ -16,9 +16,10 @@ import numpy as np
 from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.stop import Stop
+from muster.mission.values.arrays import Floats
 from muster.mission.values.ranges import require_counts, require_within
 from muster.model.problem import Problem
-from muster_studies.alternatives.strings import Decoded, Floats, Strings, random_strings, ranking, roulette, string_of
+from muster_studies.alternatives.strings import Decoded, Strings, random_strings, ranking, roulette, string_of
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,9 +21,10 @@ from muster.allocation.allocator import Allocator, Outcome, Routes
 from muster.allocation.capabilities import BY_OBJECTIVE
 from muster.allocation.stop import Stop
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.mission.values.ranges import require_counts, require_within
 from muster.model.problem import Bools, Problem
-from muster_studies.alternatives.strings import Best, Floats, Strings, fitness, ranking, spun
+from muster_studies.alternatives.strings import Best, Strings, fitness, ranking, spun
 
 LEADERS = ("best", "pareto")
 _INSIDE = 1.0 - 1e-9  # the upper wall belongs to the last robot

@@ -16,11 +16,10 @@ import numpy.typing as npt
 from muster import core
 from muster.allocation.allocator import Routes
 from muster.allocation.stop import Stop
+from muster.mission.values.arrays import Floats, Indices
 from muster.model.problem import Problem
 
 Strings = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 
 
 def random_strings(problem: Problem, count: int, random: np.random.Generator) -> Strings:

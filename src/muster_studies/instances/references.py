@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from importlib.resources import files
 from types import MappingProxyType
 from typing import Any
 
-import yaml
+from muster.mission.texts.packaged_files import packaged_data
 
 
 @cache
 def references() -> Mapping[str, Any]:
     """Return all values, by kind."""
-    content = (files("muster_studies.instances") / "references.yaml").read_text(encoding="utf-8")
-    return MappingProxyType(yaml.safe_load(content))
+    return MappingProxyType(packaged_data("muster_studies.instances", "references.yaml"))
 
 
 def numbered(kind: str) -> Mapping[tuple[str, int], float]:

@@ -1,5 +1,1 @@
 """Where robots that avoid each other by what they see jam: scenes for teams in narrow places, for every method."""
-
-from muster_studies.jams.study import JAMS
-
-__all__ = ["JAMS"]

@@ -1,5 +1,1 @@
 """[market-paper], sections 4.2, 4.3 and 5: three robots with lasers search an arena and track their paths."""
-
-from muster_studies.market_5.study import MARKET_5
-
-__all__ = ["MARKET_5"]

@@ -7,11 +7,9 @@ from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.values.arrays import Integers
 from muster.model.problem import Floats, Problem
-
-Integers = npt.NDArray[np.int64]
 
 _DIGITS = 7
 """The longest way or work has so many: rounding is far below 1e-4 of any value, and sums fit all solvers."""

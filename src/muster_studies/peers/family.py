@@ -36,6 +36,8 @@ class Family:
         how far a plan is behind the reference.
     remark
         what the missions and the reference are.
+    column, prefix
+        the heading of the missions' names, and the beginning of these that the table leaves out.
     """
 
     number: str
@@ -50,6 +52,8 @@ class Family:
     limits_s: tuple[float, ...]
     only: Mapping[float, tuple[str, ...]]
     complete: bool
+    column: str
+    prefix: str
 
     def jobs(self, effort: Effort) -> list[Run]:
         matches = {s: [self._match(name) for name in self._missions(effort, s)] for s in self._limits(effort)}
@@ -63,9 +67,11 @@ class Family:
             standings = standings_of(result for result in results if result.run.seconds == seconds)
             missions = self._missions(effort, seconds)
             gaps = {name: self._gaps(name, references[name], standings, notes) for name in missions}
-            rows += [(name, seconds, references[name], *cells) for name, cells in gaps.items()]
+            rows += [
+                (name.removeprefix(self.prefix), seconds, references[name], *cells) for name, cells in gaps.items()
+            ]
             rows.append(("mean", seconds, None, *mean_cells(list(gaps.values()))))
-        columns = ("mission", "limit [s]", "reference", *gap_columns(self.solvers))
+        columns = (self.column, "limit [s]", "reference", *gap_columns(self.solvers))
         return Table(self.number, self.title, columns, tuple(rows), (self.remark, *notes.lines()))
 
     def _match(self, mission: str) -> Match:
@@ -125,6 +131,8 @@ class _Described(msgspec.Struct, forbid_unknown_fields=True):
     limits_s: tuple[float, ...] = (2.0, 10.0)
     only: dict[float, tuple[str, ...]] = {}
     complete: bool = False
+    column: str = "mission"
+    prefix: str = ""
 
 
 @cache

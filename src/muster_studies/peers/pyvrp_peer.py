@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from muster_studies.peers.costs import Integers
+from muster.mission.values.arrays import Integers
 from muster_studies.peers.instance import Instance
 from muster_studies.peers.peer import Answer, missing
 from muster_studies.peers.processor_time import ProcessorStop

@@ -1,4 +1,7 @@
-"""The study: `search` against solvers from elsewhere, one table for each objective and one for large missions."""
+"""The study: `search` against solvers from elsewhere, one table for each objective and one for large missions.
+
+The cells of a comparison: the mean, the worst and the ratio of a solver's values, or why there is none.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +13,13 @@ from muster.mission.model import OBJECTIVES
 from muster.mission.values.ranges import require_positive
 from muster_studies.descriptions import description
 from muster_studies.effort import Effort
-from muster_studies.peers.cells import mean_cell, ratio_cell, worst_cell
 from muster_studies.peers.contest import (
     OWN,
     PEERS,
     Match,
     Result,
     Run,
+    Standing,
     Standings,
     runs_of,
     standings_of,
@@ -25,6 +28,45 @@ from muster_studies.peers.contest import (
 from muster_studies.peers.machine import machine_and_versions, require_comparable
 from muster_studies.repetition import Repetition, one_by_one
 from muster_studies.tables import Cell, Notes, Table
+
+
+def mean_cell(standing: Standing, notes: Notes) -> Cell:
+    """The mean over seeds where all do the same tasks, else that of the worst; a fault as a note."""
+    if standing.fault is not None:
+        return fault_cell(standing.fault, notes)
+    if not standing.same_tasks:
+        return worst_cell(standing)
+    return _cell(standing.mean, standing.results[0])
+
+
+def fault_cell(fault: str, notes: Notes) -> Cell:
+    """Nothing where the mission cannot be expressed, which the legend tells; else what went wrong, with a note."""
+    if fault.startswith("no prerequisites"):
+        return None
+    return f"{fault.split(':')[0]} {notes.number(fault)}" if ":" in fault or fault.startswith("claims") else fault
+
+
+def worst_cell(standing: Standing) -> Cell:
+    if standing.fault is not None:
+        return None
+    return _cell(standing.worst.value, standing.worst)
+
+
+def _cell(value: float, result: Result) -> Cell:
+    """The value; with what is done where that is not all."""
+    if result.tasks == result.tasks_total:
+        return value
+    weight = "" if result.weight == result.tasks else f", weight {result.weight:g}"
+    return f"{value:.3f} ({result.tasks} tasks{weight})"
+
+
+def ratio_cell(standing: Standing, own: Standing) -> Cell:
+    if standing.fault is not None or own.fault is not None or own.mean == 0:
+        return None
+    if not (standing.same_tasks and own.same_tasks) or standing.worst.weight != own.worst.weight:
+        return "less done" if standing.worst.weight < own.worst.weight else "more done"
+    return standing.mean / own.mean
+
 
 LARGE = "large"
 IGNORED = ("prerequisites", "suitability")

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from muster.execution.record import NoObserver
 from muster.execution.reports.report import Report
 from muster.mission.model import Event, Mission
-from muster.mission.plan import Plan
 from muster.motion.grid import Floats
 from muster.motion.port import Telemetry
 from muster.running.simulation import carry_out
@@ -117,7 +117,7 @@ class Flight:
 
 
 @dataclass
-class Log:
+class Log(NoObserver):
     """Keeps what happens: an `execution.Recorder`."""
 
     mission: Mission
@@ -129,9 +129,6 @@ class Log:
     moved: int = 0
     planning_s: float = 0.0
     _heard_cpu_s: float = 0.0
-
-    def on_plan(self, now: float, plan: Plan) -> None:
-        pass
 
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         if kind == "replanned":  # told as soon as it is done; what asked for it was told just before
@@ -147,9 +144,6 @@ class Log:
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         self.times.append(now)
         self.positions.append(positions[:, :2])
-
-    def on_report(self, report: Mapping[str, Any]) -> None:
-        pass
 
     def flown(self, report: Report) -> FlightResult:
         return FlightResult(

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster_studies.rotors.reference import Floats
+from muster.mission.values.arrays import Floats
 
 if TYPE_CHECKING:
     from muster_physics.simulated_model import SimulatedModel

@@ -8,11 +8,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import numpy.typing as npt
 
+from muster.mission.values.arrays import Floats
 from muster_studies.rotors import published as firefly
-
-Floats = npt.NDArray[np.float64]
 
 _PLACES = np.column_stack(
     [

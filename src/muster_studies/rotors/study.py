@@ -1,4 +1,7 @@
-"""The study: hovering and motors beside published parameters, steps beside the published equations."""
+"""The study: hovering and motors beside published parameters, steps beside the published equations.
+
+Figures of a step response: rise time, overshoot, settling time.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +10,40 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from muster.mission.values.arrays import Floats
 from muster.perception.optional_parts import require_physics
 from muster_studies.descriptions import description
 from muster_studies.effort import Effort
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.rotors import flown, published, reference
-from muster_studies.rotors.responses import Response
 from muster_studies.tables import CHECK_MARK, Cell, Table
+
+SETTLED = 0.02
+"""The share of a step within which a response has settled."""
+
+
+@dataclass(frozen=True)
+class Response:
+    """From 10 % to 90 % of the step, in seconds; over the step, in per cent of it; until it stays within 2 %."""
+
+    rise_s: float
+    overshoot: float
+    settled_s: float
+
+    @classmethod
+    def of(cls, times: Floats, shares: Floats) -> Response:
+        """Of a response as shares of its step: 0 at the begin, 1 at the end."""
+        outside = np.flatnonzero(np.abs(shares - 1.0) > SETTLED)
+        settled = float(np.interp(0.0, [0.0, 1.0], times[outside[-1] : outside[-1] + 2]))
+        rise = _reached(times, shares, 0.9) - _reached(times, shares, 0.1)
+        return cls(rise, max(0.0, 100.0 * (float(shares.max()) - 1.0)), settled)
+
+
+def _reached(times: Floats, shares: Floats, level: float) -> float:
+    """When a response first reached a level."""
+    after = int(np.argmax(shares >= level))
+    return float(np.interp(level, shares[after - 1 : after + 1], times[after - 1 : after + 1]))
+
 
 WITHIN = 10.0
 """Per cent by which an own figure may differ from its reference."""

@@ -1,5 +1,1 @@
 """Collision avoidance of [tcf-thesis], appendices A3 and A6.2, with RVO, HRVO, ORCA and AVO side by side."""
-
-from muster_studies.rvo.study import RVO
-
-__all__ = ["RVO"]

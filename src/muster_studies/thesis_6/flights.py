@@ -13,7 +13,6 @@ from muster.execution.record import NoObserver
 from muster.execution.reports.report import Report
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
-from muster.motion.grid import Floats
 from muster.motion.laws import PROFILE
 from muster.planning.solve import solve
 from muster.running.simulation import carry_out
@@ -178,9 +177,3 @@ class _Changes(NoObserver):
     def on_event(self, now: float, kind: str, data: Mapping[str, Any]) -> None:
         if kind == "replanned":
             self.moved += len(data["moved"])
-
-    def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
-        pass
-
-    def on_report(self, report: dict[str, Any]) -> None:
-        pass

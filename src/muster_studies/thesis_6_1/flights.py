@@ -155,6 +155,3 @@ class _Ways(NoObserver):
 
     def on_step(self, now: float, positions: Floats, headings: Floats, velocities: Floats) -> None:
         self.places.append(positions[:, :2].copy())
-
-    def on_report(self, report: dict[str, Any]) -> None:
-        pass

@@ -10,9 +10,10 @@ from muster.allocation.allocator import Routes
 from muster.allocation.auctions.auction_terms import Terms
 from muster.allocation.auctions.auctioneer import Auctioneer
 from muster.allocation.auctions.book_keeper import bids_of_round
-from muster.allocation.auctions.winners import WINNER_RULES, Floats, Indices, Sale
+from muster.allocation.auctions.winners import WINNER_RULES, Sale
 from muster.mission.auction_book import Award
 from muster.mission.auction_book import Bid as BookedBid
+from muster.mission.values.arrays import Floats, Indices
 from muster.model.problem import Problem
 from muster_team.knowledge.messages import Bid, RoundBids, Sold
 

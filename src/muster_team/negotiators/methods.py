@@ -9,9 +9,8 @@ from typing import Any
 from muster.allocation.allocator import Allocator
 from muster.allocation.auctions.auction import AUCTION
 from muster.allocation.auctions.consensus_bundle import CONSENSUS_BUNDLE
-from muster.mission.errors import ParameterError
 from muster.mission.plan import Plan
-from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.keywords import require_one_of
 from muster.model.problem import Problem
 from muster_team.auctions.bundles import BundleValuer
 from muster_team.auctions.valuation import AuctionValuer
@@ -76,6 +75,5 @@ def method_named(name: str) -> Method:
     ParameterError
         if there is none.
     """
-    if name not in METHODS:
-        raise ParameterError(f"method: {name}; expected {' or '.join(METHODS)}{did_you_mean(name, METHODS)}")
+    require_one_of("method", name, METHODS, joined_by=" or ")
     return METHODS[name]

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from muster_control.pages.editing.concurrent_edits import applied, merged
+from muster_control.pages.editing.text_view import applied, merged
 
 TEXTS = st.text(st.sampled_from("ab\n\U0001f916"), max_size=12)
 

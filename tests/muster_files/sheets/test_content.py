@@ -11,9 +11,8 @@ from muster.mission.reading.plan_reader import plan_of
 from muster.motion.actions import plan as motion_of
 from muster.planning.export_formats import ExportOptions
 from muster.verification import Stop
-from muster_files.sheets.content import sheets_of
+from muster_files.sheets.content import Times, sheets_of
 from muster_files.sheets.instructions import at_task, plain
-from muster_files.sheets.times import Times
 
 FIELD = ((0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0))
 STOP = Stop("a", False, 0.0, 1.0, 3.0)

@@ -16,8 +16,7 @@ no task with dependants moves any more: the algorithm is trapped. The published 
 
 from __future__ import annotations
 
-from muster.mission.errors import ParameterError
-from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.keywords import require_one_of
 
 RECEIVER, AS_RUN = "receiver", "others-inner"
 BOUNDS = (RECEIVER, "receiver-inner", "all", "all-inner", "others", AS_RUN)
@@ -25,5 +24,4 @@ BOUNDS = (RECEIVER, "receiver-inner", "all", "all-inner", "others", AS_RUN)
 
 def checked_bounds(bounds: str) -> None:
     """Raise ParameterError unless `bounds` is one of BOUNDS."""
-    if bounds not in BOUNDS:
-        raise ParameterError(f"bounds: {bounds}; expected {' or '.join(BOUNDS)}{did_you_mean(bounds, BOUNDS)}")
+    require_one_of("bounds", bounds, BOUNDS, joined_by=" or ")

@@ -11,9 +11,9 @@ from muster import core
 from muster.allocation.allocator import Routes
 from muster.allocation.auctions.auction_terms import BidTerms
 from muster.allocation.auctions.bids import BID_RULES, Penalties, Standing, in_quanta, weighted
-from muster.allocation.auctions.winners import WINNER_RULES, Indices, KeptLowest, Lowest, Sale, WinnerRule
+from muster.allocation.auctions.winners import WINNER_RULES, KeptLowest, Lowest, Sale, WinnerRule
 from muster.allocation.stop import Stop
-from muster.mission.values.arrays import Floats
+from muster.mission.values.arrays import Floats, Indices
 from muster.model.problem import Problem
 
 Sales = dict[int, tuple[int, Sale, Floats]]

@@ -11,10 +11,8 @@ from types import MappingProxyType
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+from muster.mission.values.arrays import Floats, Indices
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,60 @@ Verb = TypeVar("Verb", bound=Callable[..., Any])
 _FILE = click.Path(path_type=Path)
 
 
+def grouped(*options: Callable[[Any], Any]) -> Callable[[Verb], Verb]:
+    """Return what adds options to a verb, in the order in which its help lists them."""
+
+    def add(verb: Verb) -> Verb:
+        decorated: Any = verb
+        for option in reversed(options):
+            decorated = option(decorated)
+        return cast("Verb", decorated)
+
+    return add
+
+
+def _ignored(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...]:
+    return ignored_rules([name.strip() for name in (value or "").split(",") if name.strip()])
+
+
+column_option = click.option(
+    "--column",
+    "columns",
+    multiple=True,
+    metavar="KEY=HEADING",
+    help="What a heading of a table means, where its name does not say so: lat=Breite.",
+)
+format_option = click.option(
+    "--format",
+    "form",
+    type=click.Choice(["table", "json"]),
+    default="table",
+    show_default=True,
+    help="What is printed: for people, or for programs.",
+)
+quiet_option = grouped(
+    click.option("-q", "--quiet", is_flag=True, help="No progress or messages on standard error, errors aside."),
+    click.option("-v", "--verbose", is_flag=True, help="Print more messages on standard error."),
+)
+ignore_option = click.option(
+    "--ignore",
+    callback=_ignored,
+    metavar="RULES",
+    help=f"Rules that do not hold, separated by commas: {', '.join(IGNORABLE)}.",
+)
+objective_option = click.option(
+    "--objective", metavar=f"[{'|'.join(OBJECTIVES)}]", help="Instead of the mission's own."
+)
+require_complete_option = click.option(
+    "--require-complete", is_flag=True, help="Exit with 3 if a task is left out or impossible."
+)
+accept_partial_option = click.option(
+    "--accept-partial",
+    is_flag=True,
+    help="Accept a plan that the time limit cut short; else it is not carried out, and the exit code is 3.",
+)
+
+
 @dataclass(frozen=True, kw_only=True)
 class MissionFile:
     """The argument MISSION, a file or the name of a shipped mission, with the flags that some formats need."""
@@ -110,7 +164,7 @@ def _with_mission(verb: Verb, *, required: bool) -> Verb:
             return verb(mission=None, **given)
         return verb(mission=MissionFile(name=mission, **flags), **given)
 
-    options = (
+    options = grouped(
         click.argument("mission", required=required, shell_complete=_complete_mission),
         click.option("--robots", type=_FILE, metavar="FILE", help="Robots of a task list or a site."),
         click.option("--suitability", type=_FILE, metavar="CSV", help="Suitability of a task list or a site."),
@@ -123,21 +177,7 @@ def _with_mission(verb: Verb, *, required: bool) -> Verb:
         click.option("--depot", metavar="NODE", help="Start and end of a TSPLIB mission.  [default: 1]"),
         column_option,
     )
-    decorated: Any = with_mission
-    for option in reversed(options):
-        decorated = option(decorated)
-    return cast("Verb", decorated)
-
-
-def column_option(verb: Verb) -> Verb:
-    """--column."""
-    return click.option(
-        "--column",
-        "columns",
-        multiple=True,
-        metavar="KEY=HEADING",
-        help="What a heading of a table means, where its name does not say so: lat=Breite.",
-    )(verb)
+    return cast("Verb", options(with_mission))
 
 
 def pairs_of(option: str, given: Sequence[str]) -> dict[str, str]:
@@ -202,61 +242,6 @@ def require_admissible(mission: Mission, plan: Plan, file: Path, ignore: tuple[s
     from muster.verification.required import require_admissible as required
 
     return required(mission, plan, str(file), ignore)
-
-
-def format_option(verb: Verb) -> Verb:
-    """--format."""
-    return click.option(
-        "--format",
-        "form",
-        type=click.Choice(["table", "json"]),
-        default="table",
-        show_default=True,
-        help="What is printed: for people, or for programs.",
-    )(verb)
-
-
-def quiet_option(verb: Verb) -> Verb:
-    """-q and -v."""
-    verb = click.option("-v", "--verbose", is_flag=True, help="Print more messages on standard error.")(verb)
-    return click.option("-q", "--quiet", is_flag=True, help="No progress or messages on standard error, errors aside.")(
-        verb
-    )
-
-
-def ignore_option(verb: Verb) -> Verb:
-    """--ignore."""
-    return click.option(
-        "--ignore",
-        callback=_ignored,
-        metavar="RULES",
-        help=f"Rules that do not hold, separated by commas: {', '.join(IGNORABLE)}.",
-    )(verb)
-
-
-def objective_option(verb: Verb) -> Verb:
-    """--objective."""
-    return click.option("--objective", metavar=f"[{'|'.join(OBJECTIVES)}]", help="Instead of the mission's own.")(verb)
-
-
-def require_complete_option(verb: Verb) -> Verb:
-    """--require-complete."""
-    return click.option("--require-complete", is_flag=True, help="Exit with 3 if a task is left out or impossible.")(
-        verb
-    )
-
-
-def accept_partial_option(verb: Verb) -> Verb:
-    """--accept-partial."""
-    return click.option(
-        "--accept-partial",
-        is_flag=True,
-        help="Accept a plan that the time limit cut short; else it is not carried out, and the exit code is 3.",
-    )(verb)
-
-
-def _ignored(_: click.Context, __: click.Parameter, value: str | None) -> tuple[str, ...]:
-    return ignored_rules([name.strip() for name in (value or "").split(",") if name.strip()])
 
 
 def settings_of(settings: tuple[str, ...], options: Mapping[str, Any]) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 import click
 
 from muster.allocation.auctions.auction_terms import BIDS, PLACEMENTS, WINNERS
-from muster.cli.options.common import Verb, ignore_option, objective_option, settings_of
+from muster.cli.options.common import Verb, grouped, ignore_option, objective_option, settings_of
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
 from muster.mission.reading.plan_reader import read_plan
@@ -63,9 +63,7 @@ def _with_planning_options(verb: Verb, time_limit_s: float | None, carries_out: 
         return verb(options=options, **given)
 
     decorated: Any = with_options if carries_out else _TRAFFIC_OF_PLAN(with_options)
-    for option in reversed(_declared(time_limit_s)):
-        decorated = option(decorated)
-    return cast("Verb", decorated)
+    return cast("Verb", grouped(*_declared(time_limit_s))(decorated))
 
 
 def _declared(time_limit_s: float | None) -> tuple[Callable[[Any], Any], ...]:

@@ -15,7 +15,7 @@ from typing import Any, cast
 
 import click
 
-from muster.cli.options.common import Verb
+from muster.cli.options.common import Verb, grouped
 from muster.mission.errors import ParameterError
 from muster.mission.reading.order_files import OrderFile
 from muster.mission.records import Checked, Record, Settings, key_of, specified
@@ -50,10 +50,7 @@ def request_options(of: type[Settings], counts: str = "", without: Sequence[str]
                     _put(asked, path, _value(f, text))
             return verb(how=asked, **given)
 
-        decorated: Any = with_request
-        for _, f in reversed(declared):
-            decorated = _option(f)(decorated)
-        return cast("Verb", decorated)
+        return cast("Verb", grouped(*(_option(f) for _, f in declared))(with_request))
 
     return decorate
 

@@ -8,7 +8,7 @@ from functools import wraps
 from pathlib import Path
 from typing import Any, cast
 
-from muster.cli.options.common import Verb
+from muster.cli.options.common import Verb, grouped
 from muster.mission.model import Mission
 from muster.running.run_outputs import RUN_OUTPUTS, BegunOutput, RunOutput
 
@@ -44,10 +44,8 @@ def run_output_options(verb: Verb) -> Verb:
         asked = tuple((output, {name: given.pop(name) for name in output.options}) for output in outputs)
         return verb(outputs=AskedOutputs(asked), **given)
 
-    decorated: Any = with_outputs
-    for option in reversed([option for output in outputs for option in output.options.values()]):
-        decorated = option(decorated)
-    return cast("Verb", decorated)
+    options = [option for output in outputs for option in output.options.values()]
+    return cast("Verb", grouped(*options)(with_outputs))
 
 
 def not_at_server() -> dict[str, str]:

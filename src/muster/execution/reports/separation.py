@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.execution.reports.itinerary import Itinerary
+from muster.mission.values.arrays import Floats
 
-Floats = npt.NDArray[np.float64]
 _ROUNDING_M = 1e-9
 
 

@@ -15,7 +15,7 @@ from typing import Any, Generic, TypeVar
 
 from muster.mission.errors import MusterError, ParameterError, PluginError
 from muster.mission.system.installation import DISTRIBUTION
-from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.keywords import require_one_of
 
 T = TypeVar("T")
 
@@ -92,9 +92,7 @@ class Registry(Mapping[str, T], Generic[T]):
         PluginError
             if its package cannot be loaded, or two packages register the name.
         """
-        if name not in self._entries:
-            hint = did_you_mean(str(name), self)
-            raise ParameterError(f"{self._what}: {name}; expected {', '.join(self)}{hint}")
+        require_one_of(self._what, name, self)
         return self[name]
 
     def usable(self) -> dict[str, T]:
@@ -164,6 +162,26 @@ def function_expected(expected: str) -> Callable[[str, object], Any]:
     def checked(name: str, found: object) -> Any:
         if not callable(found):
             raise ParameterError(f"it is a {type(found).__name__}; expected {expected}")
+        return found
+
+    return checked
+
+
+def instance_expected(kind: type[T], expected: str = "") -> Callable[[str, object], T]:
+    """Return the check of implementations that are instances of a class, and of the name that one says it has.
+
+    Parameters
+    ----------
+    kind : type
+        The class.
+    expected : str
+        How messages call what should be registered; by default `a` and the name of the class.
+    """
+
+    def checked(name: str, found: object) -> T:
+        if not isinstance(found, kind):
+            raise ParameterError(f"it is a {type(found).__name__}; expected {expected or f'a {kind.__name__}'}")
+        require_own_name(name, getattr(found, "name", name))
         return found
 
     return checked

@@ -16,11 +16,12 @@ import numpy as np
 
 from muster.mission.action_keys import COVERAGE, ActionKeys
 from muster.mission.model import Action, Point, Robot, Task
+from muster.mission.values.arrays import Floats
 from muster.motion.actions.action import Impossible, TaskMotion, along, raised
 from muster.motion.actions.footprint import Footprint, footprint_of
 from muster.motion.actions.raster_search import OVERLAP
 from muster.motion.areas.coverage_path import MOST_LANES, CoveragePath, TooManyLanesError, coverage_path
-from muster.motion.areas.region import Floats, Ring
+from muster.motion.areas.region import Ring
 from muster.motion.areas.split import parts_of
 from muster.motion.maps.optional_parts import require_map_extra
 

@@ -13,7 +13,7 @@ from itertools import pairwise, product
 import numpy as np
 import numpy.typing as npt
 
-from muster.motion.areas.region import Floats
+from muster.mission.values.arrays import Floats
 
 CORNERS = 4
 """From how many corners a cell can be begun."""

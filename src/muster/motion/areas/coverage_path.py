@@ -9,9 +9,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from muster.mission.values.arrays import Floats
 from muster.motion.areas.cells import Cell, cells_of
 from muster.motion.areas.lanes import Lanes, strip_count
-from muster.motion.areas.region import Floats, Region, Ring, turned_points
+from muster.motion.areas.region import Region, Ring, turned_points
 from muster.motion.areas.tour import tour
 from muster.motion.areas.transit import Transit
 

@@ -19,7 +19,8 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 import numpy.typing as npt
 
-from muster.motion.areas.region import Floats, Region, Surface
+from muster.mission.values.arrays import Floats
+from muster.motion.areas.region import Region, Surface
 
 if TYPE_CHECKING:
     import shapely

@@ -9,14 +9,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
-import numpy.typing as npt
+
+from muster.mission.values.arrays import Floats
 
 if TYPE_CHECKING:
     import shapely
 
 Surface: TypeAlias = "shapely.Polygon | shapely.MultiPolygon"
 
-Floats = npt.NDArray[np.float64]
 Ring = tuple[tuple[float, ...], ...]
 
 _ROUNDING = 1e-7

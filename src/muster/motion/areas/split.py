@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from muster.mission.values.arrays import Floats
 from muster.motion.areas.coverage_path import CoveragePath
-from muster.motion.areas.region import Floats
 
 _LONGER = 1.03
 """Parts of whole lanes may be so much longer than parts that end within lanes."""

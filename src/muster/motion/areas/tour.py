@@ -13,8 +13,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from muster.mission.values.arrays import Floats
 from muster.motion.areas.cells import CORNERS, Cell
-from muster.motion.areas.region import Floats
 from muster.motion.areas.transit import Transit
 
 _MOST_STEPS = 30_000

@@ -12,7 +12,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from muster.motion.areas.region import Floats, Region
+from muster.mission.values.arrays import Floats
+from muster.motion.areas.region import Region
 
 _MOST_PAIRS = 50_000
 """Of corners whose sight of each other is looked at in one go."""

@@ -7,12 +7,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from muster import core
 from muster.mission.errors import ParameterError
-
-Floats = npt.NDArray[np.float64]
+from muster.mission.values.arrays import Floats
 
 _SOME = 5
 """How many values a message shows."""

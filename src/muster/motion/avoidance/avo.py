@@ -19,8 +19,9 @@ from typing import ClassVar
 import numpy as np
 
 from muster import core
+from muster.mission.values.arrays import Floats
 from muster.mission.values.ranges import require_finite_positive
-from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Floats, Obstacles
+from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Obstacles
 from muster.motion.avoidance.parameters import CommonParameters
 
 

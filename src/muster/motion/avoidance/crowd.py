@@ -13,8 +13,9 @@ import numpy.typing as npt
 
 from muster import core
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.mission.values.ranges import require_finite_positive
-from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Floats, Obstacles
+from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Obstacles
 from muster.motion.avoidance.method import Method
 
 Preference = Callable[[Floats, int], Floats]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Floats, Obstacles
+from muster.mission.values.arrays import Floats
+from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Obstacles
 
 
 class Method(Protocol):

@@ -16,8 +16,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import ClassVar
 
+from muster.mission.values.arrays import Floats
 from muster.mission.values.ranges import require_finite_positive
-from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Floats, Obstacles
+from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Obstacles
 from muster.motion.avoidance.parameters import CommonParameters
 
 

@@ -27,13 +27,9 @@ from typing import ClassVar
 
 from muster import core
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.mission.values.ranges import require_counts, require_finite_positive
-from muster.motion.avoidance.agents import (
-    NO_OBSTACLES,
-    Agents,
-    Floats,
-    Obstacles,
-)
+from muster.motion.avoidance.agents import NO_OBSTACLES, Agents, Obstacles
 from muster.motion.avoidance.parameters import CommonParameters
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from muster.motion.kinematics.kinematics import Floats, moved_along_arc, reached, turn_towards
+from muster.mission.values.arrays import Floats
+from muster.motion.kinematics.kinematics import moved_along_arc, reached, turn_towards
 from muster.motion.limits import Limits
 
 

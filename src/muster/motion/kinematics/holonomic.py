@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from muster.motion.kinematics.kinematics import Floats, reached, shortened, turn_towards
+from muster.mission.values.arrays import Floats
+from muster.motion.kinematics.kinematics import reached, shortened, turn_towards
 from muster.motion.limits import Limits
 
 

@@ -10,13 +10,11 @@ import math
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
+from muster.mission.values.arrays import Floats
 from muster.motion.frames import wrapped
 from muster.motion.limits import Limits
-
-Floats = npt.NDArray[np.float64]
 
 
 class Kinematics(Protocol):

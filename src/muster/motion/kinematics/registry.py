@@ -6,9 +6,8 @@ import math
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
-from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.keywords import require_one_of
 from muster.motion.kinematics.differential_drive import DifferentialDrive
 from muster.motion.kinematics.hexacopter import Hexacopter
 from muster.motion.kinematics.holonomic import Holonomic
@@ -31,8 +30,7 @@ def kinematics_named(name: str) -> Kinematics:
     ParameterError
         if there is none.
     """
-    if name not in KINEMATICS:
-        raise ParameterError(f"kinematics: {name}; expected {', '.join(KINEMATICS)}{did_you_mean(name, KINEMATICS)}")
+    require_one_of("kinematics", name, KINEMATICS)
     return KINEMATICS[name]
 
 

@@ -11,8 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import Finding, MissionError
-
-Floats = npt.NDArray[np.float64]
+from muster.mission.values.arrays import Floats
 
 _EXPECTED = "an image in PNG or PGM (P2 or P5)"
 _READ = {b"\x89PNG\r\n\x1a\n": "PNG", b"P2": "plain PGM", b"P5": "PGM"}

@@ -16,8 +16,9 @@ import numpy.typing as npt
 from muster.mission.errors import MissionError
 from muster.mission.model import Map
 from muster.mission.value_types import Fault
+from muster.mission.values.arrays import Floats
 from muster.motion.grid import Grid
-from muster.motion.maps.images import Floats, image_kind, read_shades
+from muster.motion.maps.images import image_kind, read_shades
 from muster.motion.maps.ros_yaml import RosMap, read_ros_map
 
 _OCCUPIED, _FREE = 0.65, 0.196  # the thresholds that ROS writes where nobody says otherwise

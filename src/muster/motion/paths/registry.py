@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy.typing as npt
 
-from muster.mission.errors import ParameterError
-from muster.mission.texts.near_matches import did_you_mean
+from muster.mission.values.keywords import require_one_of
 from muster.motion.free_space import Space
 from muster.motion.path import NoPath, Path
 from muster.motion.paths.a_star import A_STAR
@@ -36,9 +35,7 @@ def planner_named(name: str) -> Planner:
     ParameterError
         if there is none.
     """
-    if name not in PLANNERS:
-        hint = did_you_mean(str(name), PLANNERS)
-        raise ParameterError(f"planner: {name}; expected {', '.join(PLANNERS)}{hint}")
+    require_one_of("planner", name, PLANNERS)
     return PLANNERS[name]
 
 

@@ -10,10 +10,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.mission.model import Map, Station, Task, Zone
 from muster.mission.stations import station_sign
+from muster.mission.values.arrays import Floats
 from muster.motion.grid import Grid
 from muster.report.figures.styles import PALETTE
 from muster.report.maps.area_marks import areas_of
@@ -29,8 +29,6 @@ from muster.state.mission_state import OPEN
 from muster.state.reasons import is_no_loss, was_cancelled
 from muster.state.robots import OUT
 from muster.state.words import DETAIL
-
-Floats = npt.NDArray[np.float64]
 
 MOST_SAMPLES = 200_000
 """Moments times robots; where a record has more, moments are left out evenly."""

@@ -11,16 +11,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
+from muster.mission.values.arrays import Floats
 from muster.report.record import json_messages, scene
 from muster.report.record.routes import RouteLines
 from muster.state import MissionState, event_of
-
-Floats = npt.NDArray[np.float64]
 
 
 class Publisher(ABC):

@@ -14,9 +14,10 @@ from muster.mission.errors import Finding, InputError
 from muster.mission.model import Mission
 from muster.mission.reading.from_data import mission_from
 from muster.mission.reading.yaml_reader import parse_data
+from muster.mission.values.arrays import Floats
 from muster.report.record.json_messages import grid_from
 from muster.report.record.plan_changes import ReadPlan
-from muster.report.record.recording import Floats, PlanVersion, Recording, Tracks
+from muster.report.record.recording import PlanVersion, Recording, Tracks
 from muster.report.record.schemas import MISSION_FILE
 from muster.report.record.writer import require_mcap
 from muster.state import MissionState, event_of

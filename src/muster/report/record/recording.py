@@ -7,15 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
 from muster.mission.model import Mission, Point, Robot, Task
 from muster.mission.plan import Plan
+from muster.mission.values.arrays import Floats
 from muster.motion.grid import Grid
 from muster.state import ExecutionEvent, MissionState
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

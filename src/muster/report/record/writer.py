@@ -13,9 +13,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self
 
-import numpy as np
-import numpy.typing as npt
-
 from muster.mission.errors import MissingExtraError
 from muster.mission.model import Mission, Point
 from muster.mission.plan import Plan
@@ -25,8 +22,6 @@ from muster.report.record import json_messages
 from muster.report.record.plan_changes import PlanChanges
 from muster.report.record.publisher import Publisher
 from muster.report.record.schemas import MISSION_FILE, SCHEMAS, TOPICS
-
-Floats = npt.NDArray[np.float64]
 
 
 class RecordWriter(Publisher):

@@ -15,9 +15,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from muster.mission.values.arrays import Floats
+
 Row = Sequence[float]
 """x, y, z in metres, heading in radians, velocities in m/s."""
 

@@ -12,12 +12,13 @@ import numpy as np
 
 from muster.mission.model import Mission
 from muster.mission.plan import Plan
+from muster.mission.values.arrays import Floats
 from muster.report.record.json_messages import json_bytes
 from muster.report.record.plan_changes import PlanChanges
 from muster.report.record.routes import RouteLines
 from muster.state import MissionState
 from muster.state.words import words_of
-from muster_control.runs.log.tracks import Floats, Row, Steps, Track, packed
+from muster_control.runs.log.tracks import Row, Steps, Track, packed
 
 
 class Out(Protocol):

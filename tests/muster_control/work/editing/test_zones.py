@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from muster_control.work.editing.changes import add_zone
 from muster_control.work.editing.edits import EditError, data_of
-from muster_control.work.editing.zones import add_zone
 
 WITH_MAP = """\
 map: {boundary: [[0, 0], [9, 0], [9, 9], [0, 9]]}   # the yard
