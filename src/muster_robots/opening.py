@@ -55,7 +55,7 @@ def ros2_fleet(mission: Mission, settings: Ros2Settings, **more: Any) -> Any:
     )
 
 
-def open_mavlink(mission: Mission, settings: MavlinkSettings, _halt: threading.Event, again: bool) -> Opened:
+def open_mavlink(mission: Mission, settings: MavlinkSettings, halt: threading.Event, again: bool) -> Opened:
     from muster_robots.mavlink import MavlinkFleet
 
     if not settings.arm:
@@ -72,7 +72,7 @@ def open_mavlink(mission: Mission, settings: MavlinkSettings, _halt: threading.E
     except BaseException:
         fleet.close()
         raise
-    return fleet, _nothing if settings.at_end == "hold" else partial(fleet.end, settings.at_end)
+    return fleet, partial(fleet.finish, settings.at_end, halt.is_set)
 
 
 def _heard(fleet: Any, wait_s: float, halt: threading.Event, needed: str = "its pose", *, some: bool = False) -> Fleet:

@@ -68,10 +68,4 @@ def command(mission: MissionFile, options: RealRunOptions) -> int:
         left_robots_told(how),
         claimed_fleet(loaded, options.request, halt, again=how.again) as (fleet, at_end),
     ):
-
-        def end() -> None:
-            at_end()
-            if (await_landing := getattr(fleet, "await_landing", None)) is not None:
-                await_landing(halt.is_set)
-
-        return carried_out_from_here(fleet, given, how, options, halt, end)
+        return carried_out_from_here(fleet, given, how, options, halt, at_end)

@@ -171,12 +171,18 @@ class MavlinkFleet:
                     if why := session.refusal([waypoint.position for waypoint in flown]):
                         yield robot.id, task.id, f"{Kind.OUTSIDE_FENCE.words}: {why}"
 
-    def recover(self, at_end: AtEnd, halted: Callable[[], bool]) -> None:
-        """Let every drone that is Muster's return and land, or land where it is, and wait until drones are disarmed."""
-        self.end("return" if at_end == "hold" else at_end)
+    def finish(self, at_end: AtEnd, halted: Callable[[], bool]) -> None:
+        """Give all drones the last order, and wait until they have landed; at `halted` they hover. `hold`: nothing."""
+        if at_end == "hold" or halted():
+            return
+        self.end(at_end)
         self.await_landing(halted)
         if halted():
             self.stop()
+
+    def recover(self, at_end: AtEnd, halted: Callable[[], bool]) -> None:
+        """Let every drone that is Muster's return and land, or land where it is, and wait until drones are disarmed."""
+        self.finish("return" if at_end == "hold" else at_end, halted)
 
     def advance(self, until_s: float) -> Sequence[Event]:
         """Receive and send; reports each drone with a fault once (`robot_fails`). Raises what has ended the thread."""
