@@ -109,7 +109,7 @@ class MavlinkFleet:
     @property
     def limits(self) -> Limits:
         """How long a drone may be silent, and how long the mission waits for one that is absent."""
-        return Limits(silent_after_s=self._settings.link_lost_s, absent_for_s=self._settings.absent_s)
+        return self._settings.limits
 
     @property
     def faults(self) -> list[Fault]:
