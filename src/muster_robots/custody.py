@@ -151,6 +151,10 @@ class Custody:
         self._misfits, self._fits_since_s, self._repeated = 0, None, 0
         self._said_s = self._said_s if said_s is None else said_s
 
+    def said(self, now: float) -> None:
+        """Note that what is wanted was said only now: before, it could not be."""
+        self._said_s, self._misfits = now, 0
+
     def suspect(self, now: float) -> None:
         """Let the robot take no part until it has done for a while what is wanted: it did not obey."""
         if self.standing is not Standing.SUSPECT:

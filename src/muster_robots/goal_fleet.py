@@ -263,6 +263,7 @@ class GoalPort:
         else:
             link.go(self.robot, self._follower.target)
         self._delivered, self._is_told_again = wanted, False
+        self.custody.told(self._clock())
 
     def hear(self, now: float, pose: RobotPose | None) -> bool:
         """Take in a report, and see whether the robot obeys; returns whether a way point is passed."""

@@ -51,6 +51,7 @@ def ros2_fleet(mission: Mission, settings: Ros2Settings, **more: Any) -> Any:
         poses=settings.poses,
         use_sim_time=settings.use_sim_time,
         joins=not settings.known_only,
+        custody=settings,
         **more,
     )
 

@@ -61,13 +61,17 @@ class PoseCustody:
 
     @property
     def is_taken(self) -> bool:
-        """Whether somebody else has it: it is told nothing."""
-        return self._custody.standing in _TAKEN
+        """Whether somebody else has it now: it is told nothing."""
+        return self._taken_by is not Holder.MUSTER
 
     def want(self, now: float, *, goes: bool) -> bool:
         """Note an order, to go or to hold; returns whether the robot may be told."""
         self._custody.want(Wants.ORDER if goes else Wants.HOLD, now)
         return not self.is_taken
+
+    def told(self, now: float) -> None:
+        """Note that the robot was told only now what it is to do: before, it was not reached."""
+        self._custody.said(now)
 
     def hear(self, now: float, place: Place, heading: float, told_s: float | None = None) -> None:
         """Take in a pose.
@@ -120,7 +124,7 @@ class PoseCustody:
         """Return telemetry as it counts by the standing of the robot."""
         if said is None:
             return None
-        if self.is_taken:
+        if self._custody.standing in _TAKEN:
             return replace(said, suspended=f"{self._custody.standing.value}: {self._why}")
         is_absent = self._custody.standing in (Standing.SILENT, Standing.SUSPECT)
         until_s = self._silent_since_s if is_absent else self._heard[1]
