@@ -128,6 +128,8 @@ class Custody:
         The relation of the robot to Muster now.
     was_piloted : bool
         Whether a pilot with sticks has had the robot: it gets no tasks any more, and the command at the end.
+    repeated : int
+        Times that what is wanted was said again, without effect.
     """
 
     limits: CustodyLimits
@@ -135,6 +137,7 @@ class Custody:
     wanted: Wants = Wants.IDLE
     standing: Standing = Standing.OURS
     was_piloted: bool = False
+    repeated: int = 0
     _troubles_s: deque[float] = field(default_factory=deque)
     _state_s: float = -math.inf  # of the last report that was counted
     _astray: int = 0  # reports in a row that show another holder
@@ -142,13 +145,12 @@ class Custody:
     _heard_again_s: float = -math.inf  # when a silence ended
     _fits_since_s: float | None = None
     _said_s: float = -math.inf
-    _repeated: int = 0  # times that what is wanted was said again
     _is_paused: bool = False  # whether another station lets the robot hold
 
     def want(self, what: Wants, said_s: float | None = None) -> None:
         """Set what the robot is to do; the bridge gives the command itself the first time, at `said_s`."""
         self.wanted = what
-        self._misfits, self._fits_since_s, self._repeated = 0, None, 0
+        self._misfits, self._fits_since_s, self.repeated = 0, None, 0
         self._said_s = self._said_s if said_s is None else said_s
 
     def said(self, now: float) -> None:
@@ -200,14 +202,14 @@ class Custody:
         elif seen.unfit and self.standing is Standing.OURS:
             self.standing = Standing.SUSPECT
         self._settle(seen, now, fits=fits and not elsewhere and not seen.unfit)
-        self._repeated = 0 if fits else self._repeated
+        self.repeated = 0 if fits else self.repeated
         is_order = self.wanted is Wants.ORDER
-        again_s = self.limits.again_s * 2 ** (min(self._repeated, _MOST_DOUBLED) if is_order else 0)
+        again_s = self.limits.again_s * 2 ** (min(self.repeated, _MOST_DOUBLED) if is_order else 0)
         if elsewhere or self._misfits < _SEEN_TWICE or now < self._said_s + again_s:
             return None
         if self.wanted is Wants.IDLE or (is_order and not self.repeats_orders):
             return None
-        self._said_s, self._repeated = now, self._repeated + 1
+        self._said_s, self.repeated = now, self.repeated + 1
         return self.wanted
 
     def _is_silent(self, seen: Seen, now: float) -> bool:
@@ -219,6 +221,7 @@ class Custody:
         if self.standing is Standing.SILENT:
             self.standing, self._heard_again_s = Standing.SUSPECT, seen.heard_s
             self._misfits, self._astray, self._fits_since_s = _SEEN_TWICE - 1, 0, None
+            self._said_s = -math.inf  # what was said meanwhile was not heard
         return False
 
     def _is_elsewhere(self, seen: Seen, *, fits: bool) -> bool:

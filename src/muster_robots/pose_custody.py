@@ -39,11 +39,20 @@ class PoseCustody:
     is_received : callable
         Returns whether somebody does. Where nobody does the robot cannot be driven, whatever it says of its place: it
         counts as not heard.
+    lets_go : bool
+        Whether a robot that has held is anybody's: it is not told again when it moves, as a person may drive it.
     """
 
     def __init__(
-        self, robot: str, limits: CustodyLimits, expected: str = "", is_received: Callable[[], bool] = lambda: True
+        self,
+        robot: str,
+        limits: CustodyLimits,
+        expected: str = "",
+        is_received: Callable[[], bool] = lambda: True,
+        *,
+        lets_go: bool = False,
     ) -> None:
+        self._lets_go = lets_go
         self.robot, self._expected, self._is_received = robot, expected, is_received
         self._custody = Custody(limits, repeats_orders=True)
         self._again_s = limits.again_s
@@ -63,6 +72,11 @@ class PoseCustody:
     def is_taken(self) -> bool:
         """Whether somebody else has it now: it is told nothing."""
         return self._taken_by is not Holder.MUSTER
+
+    @property
+    def moves_by_others(self) -> bool:
+        """Whether it moves on though it was told twice to hold: if it knows no goal of Muster's, somebody moves it."""
+        return self._custody.wanted is Wants.HOLD and self._custody.repeated > 1 and self._does is Wants.ORDER
 
     def want(self, now: float, *, goes: bool) -> bool:
         """Note an order, to go or to hold; returns whether the robot may be told."""
@@ -115,6 +129,8 @@ class PoseCustody:
         elif is_carried_out and custody.wanted is Wants.ORDER:
             does = Wants.ORDER
         command = custody.look(Seen(heard_s, heard_s, does, self._taken_by), now)
+        if self._lets_go and does is Wants.IDLE and custody.wanted is Wants.HOLD and custody.standing is Standing.OURS:
+            custody.want(Wants.IDLE)
         if custody.standing is Standing.SILENT and not was_silent:
             self._silent_since_s = told_s
             self._track.clear()

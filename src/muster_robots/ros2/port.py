@@ -187,7 +187,7 @@ class Ros2Port:
         again = self._look(now)
         if passed or again is Wants.ORDER or (self._withheld and self._said is not None):
             self._speak()
-        if again is Wants.HOLD and self.goals.reports and self.goals.at_rest:
+        if self.goals.reports and self.goals.at_rest and self.custody.moves_by_others:
             self._leave("it moves by no goal of Muster's")
         elif self.is_to_stay or again is Wants.HOLD:
             self._let_stay()
