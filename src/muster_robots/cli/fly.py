@@ -15,7 +15,7 @@ from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts, signals_interrupt
-from muster_robots.cli.going_on import GoingOn, going_on, recovered
+from muster_robots.cli.going_on import GoingOn, as_wanted, going_on, recovered
 from muster_robots.cli.last_lines import LastLines, show_final_states
 from muster_robots.cli.real_robots import (
     carried_out,
@@ -50,7 +50,9 @@ def command(mission: MissionFile, options: RealRunOptions) -> int:
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
-    given, settings, how = read_given_plan(options, loaded), options.request.settings, going_on(options, loaded)
+    given, how = read_given_plan(options, loaded), going_on(options, loaded)
+    options = as_wanted(options, how)
+    settings = options.request.settings
     with ExitStack() as stack:
         stack.enter_context(robots_claimed(claims_of_request(options.request)))
         made = MavlinkFleet(loaded, settings.endpoints, settings, height_m=settings.height_m)
