@@ -29,6 +29,8 @@ NOT_DELIVERED = (OSError, ValueError)
 """Errors of a link that mean that nothing was delivered or understood: it is tried again. Others end the run."""
 _POLL_S = 0.2
 _STOPS_WITHIN_S = 2.0
+LEASE_S = 10.0
+"""Seconds for which orders hold where a link renews them: planning the rest again may take a few, without a poll."""
 _TURNED_RAD = 0.1
 _Goal = tuple[int, Place | None, float | None]
 _log = logging.getLogger(__name__)
@@ -62,7 +64,11 @@ class RobotPose:
 
 
 class RobotLink(Protocol):
-    """How robots are reached. Each call returns within a second, or raises an error of `NOT_DELIVERED`."""
+    """How robots are reached. Each call returns within a second, or raises an error of `NOT_DELIVERED`.
+
+    A link may have a method `renew(seconds)`: orders hold for so long after each call, and then robots stop by
+    themselves, as Muster may have been killed. It is called before each look at poses.
+    """
 
     def poses(self) -> Mapping[str, RobotPose]:
         """Return what robots report, by their ids; those of which nothing is known are left out."""
@@ -105,6 +111,7 @@ class GoalFleet:
         wait: Callable[[float], None] = time.sleep,
     ) -> None:
         self._link, self._clock, self._wait = link, SystemClock() if clock is None else clock, wait
+        self._renew: Callable[[float], object] = getattr(link, "renew", lambda _seconds: None)
         self.simulated_time = clock is not None
         self._begun_s, self._polled_s = self._clock.now(), -math.inf
         self._failing: dict[str, str] = {}  # why by robot, "" for the poll; the last to fail is the last
@@ -185,6 +192,7 @@ class GoalFleet:
     def _poll(self) -> bool:
         """Take in what robots report; returns whether one has passed a way point."""
         try:
+            self._renew(LEASE_S)
             poses = self._link.poses()
         except NOT_DELIVERED as error:
             self._note("", error)

@@ -11,7 +11,7 @@ from muster.mission.errors import NetworkError
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.port import Waypoint
 from muster_robots.custody_settings import CustodySettings
-from muster_robots.goal_fleet import GoalFleet
+from muster_robots.goal_fleet import LEASE_S, GoalFleet
 
 MISSION = Mission(
     robots=tuple(Robot(id=name, position=place, radius_m=0.2) for name, place in PLACES.items()),
@@ -210,3 +210,35 @@ def test_a_robot_that_a_person_drives_is_told_nothing_and_takes_part_again(yard,
     body.goal, yard.pose = None, pose
     go_on(fleet, 12.0)
     assert fleet.ports["r_0"].telemetry().suspended == ""
+
+
+class LeasedYard(Yard):
+    """Its robots stop by themselves where nobody has renewed their orders for a while."""
+
+    until_s = 0.0
+
+    def renew(self, seconds):
+        self.until_s = self.clock.now() + seconds
+
+    def move(self):
+        if self.clock.now() > self.until_s:
+            for body in self.bodies.values():
+                body.goal = None
+        super().move()
+
+
+def test_orders_hold_while_they_are_renewed_and_are_given_again_where_that_came_late():
+    yard = LeasedYard()
+    fleet = GoalFleet(MISSION, yard, clock=yard.clock, wait=yard.clock.advance)
+    fleet.robots_not_ready()
+    fleet.ports["r_0"].send([Waypoint((60.0, 1.0, 0.0))])
+    go_on(fleet, 2 * LEASE_S)
+    assert yard.bodies["r_0"].place[0] > 5.0 + 2 * LEASE_S - 2.0
+    for _ in range(40):  # Muster is killed, or plans for long
+        yard.clock.advance(0.5)
+        yard.move()
+    left_at = yard.bodies["r_0"].place[0]
+    assert left_at < 5.0 + 3 * LEASE_S + 2.0
+    go_on(fleet, 10.0)
+    assert yard.orders == [("r_0", (60.0, 1.0))] * 2
+    assert yard.bodies["r_0"].place[0] > left_at + 3.0
