@@ -1,13 +1,20 @@
 """Robots on ROS 2 in custody: told again until they do what is wanted, silent and back, taken, put out."""
 
+import math
+from dataclasses import replace
+
 import pytest
+from tests.muster_robots.ros2.bus import STEP_S, Bus
 from tests.muster_robots.ros2.fake_middleware import Middleware, Navigator, posed
 
-from muster.mission.model import Mission, Robot
+import muster
+from muster.mission.model import Mission, Robot, Task
 from muster.motion.port import Waypoint
 from muster_robots.custody_settings import CustodySettings
 from muster_robots.navigation import Outcome
 from muster_robots.ros2.fleet import Ros2Fleet
+from muster_robots.ros2.simulated_participant import SimulatedRobot
+from muster_robots.simulated_program import Wanted
 
 FAR = (50.0, 0.0, 0.0)
 
@@ -169,3 +176,61 @@ def test_what_is_sent_to_a_robot_that_is_taken_is_told_when_it_is_given_back():
     assert there.goals == [50.0]
     there.pass_by(6.0, 0.0)
     assert there.goals == [50.0, 3.0]
+
+
+class Mortal:
+    """A simulated robot on a bus that is restarted, and whose radio is off, at given times of the bus."""
+
+    def __init__(self, robot, bus, *, restarts=(), unheard=()):
+        self._robot, self._bus, self._unheard = robot, bus, unheard
+        self._restarts = list(restarts)
+        self._begin()
+
+    def _begin(self):
+        body = Wanted(self._robot, "", 1 / STEP_S, {})
+        self._participant = self._bus.participant()
+        self._body = SimulatedRobot(body, self._participant)
+
+    def step(self, now, by_s):
+        if self._restarts and now >= self._restarts[0]:
+            self._restarts.pop(0)
+            self._participant.close()
+            x, y, _, heading = (*self._body._body.pose[0], self._body._body.pose[1])
+            self._robot = replace(self._robot, position=(x, y), heading_deg=math.degrees(heading))
+            self._begin()
+        if not any(begin <= now < end for begin, end in self._unheard):
+            self._body.step(now, by_s)
+        else:
+            self._body._body.step(now, by_s)
+
+
+def carried_out(**faults):
+    """A mission of two robots of which `r_0` has faults: its report, and what happened."""
+    robots = tuple(
+        Robot(id=f"r_{k}", position=(0.0, 4.0 * k), radius_m=0.2, speed_mps=1.0, kinematics="holonomic")
+        for k in range(2)
+    )
+    tasks = tuple(Task(id=f"t_{k}", position=(8.0 + 4 * (k // 2), 4.0 * (k % 2))) for k in range(4))
+    there, bus, events = Mission(robots=robots, tasks=tasks), Bus(), []
+    bus.robots += [Mortal(robots[0], bus, **faults), Mortal(robots[1], bus)]
+    fleet = Ros2Fleet(there, middleware=bus.participant(moves=True), clock=bus.clock, joins=False)
+    while fleet.robots_not_ready():
+        fleet.advance(fleet.time_s + 0.1)
+    plan = muster.solve(there, "greedy")
+    report = muster.carry_out(there, plan, fleet, traffic="free", on_event=events.append)
+    fleet.close()
+    return report, [(event.kind, event.data.get("robot")) for event in events]
+
+
+def test_a_mission_goes_on_with_a_robot_that_restarts_and_is_given_its_goal_again():
+    report, events = carried_out(restarts=[4.0, 11.0])
+    assert sorted(report.tasks_done) == ["t_0", "t_1", "t_2", "t_3"]
+    out = {"robot_silent", "robot_stuck", "robot_sent_again", "robot_fails"}
+    assert [kind for kind, _ in events if kind in out] == []  # the executor has not noticed
+
+
+def test_a_mission_goes_on_with_a_robot_that_is_away_for_a_while():
+    report, events = carried_out(unheard=[(3.0, 10.0)])
+    assert sorted(report.tasks_done) == ["t_0", "t_1", "t_2", "t_3"]
+    assert ("robot_silent", "r_0") in events
+    assert ("robot_returns", "r_0") in events
