@@ -15,12 +15,15 @@ from dataclasses import replace
 
 from muster.execution.fleet import Failure
 from muster.mission.model import Event
-from muster.motion.frames import wrapped
 from muster.motion.port import Place, Telemetry
 from muster_robots.custody import Custody, CustodyLimits, Holder, Seen, Standing, Wants
 
 _MOVED_M, _TURNED_RAD = 0.2, 0.35
-"""A robot whose poses differ by less within `again_s` stands: localisation trembles."""
+"""A robot whose poses differ by less within a while stands: localisation trembles."""
+_WHILE = 0.75
+"""That while as a share of `again_s`: a robot that has obeyed is not told again for how it moved before."""
+_KEPT = 8
+"""Poses that are kept of that while, however often they come."""
 _TAKEN = (Standing.PILOT, Standing.STATION, Standing.FAILSAFE)
 _log = logging.getLogger(__name__)
 
@@ -55,8 +58,9 @@ class PoseCustody:
         self._lets_go = lets_go
         self.robot, self._expected, self._is_received = robot, expected, is_received
         self._custody = Custody(limits, repeats_orders=True)
-        self._again_s = limits.again_s
-        self._track: deque[tuple[float, Place, float]] = deque()
+        self._while_s = _WHILE * limits.again_s
+        self._here: tuple[Place, float] = ((0.0, 0.0, 0.0), 0.0)
+        self._track: deque[tuple[float, Place, float]] = deque()  # when and where it was lately
         self._heard_s = self._told_s = -math.inf  # of the last pose, by the clocks of custody and of telemetry
         self._unreceived: tuple[float, float] | None = None  # the same of the last one whose orders were received
         self._silent_since_s = -math.inf  # by the clock of telemetry
@@ -96,8 +100,10 @@ class PoseCustody:
             When it was reported, by the clock of custody, and by that of telemetry; by default that is the same clock.
         """
         self._heard_s, self._told_s = now, now if told_s is None else told_s
-        self._track.append((now, place, heading))
-        while len(self._track) > 1 and self._track[1][0] <= now - self._again_s:
+        self._here = place, heading
+        if not self._track or now >= self._track[-1][0] + self._while_s / _KEPT:
+            self._track.append((now, place, heading))
+        while len(self._track) > 1 and self._track[1][0] <= now - self._while_s:
             self._track.popleft()
 
     def take(self, now: float, who: Holder, why: str) -> None:
@@ -122,7 +128,7 @@ class PoseCustody:
         custody, was_silent = self._custody, self._custody.standing is Standing.SILENT
         heard_s, told_s = self._heard
         does = self._does
-        if self._taken_by is not Holder.MUSTER and does is Wants.IDLE and now >= self._taken_s + self._again_s:
+        if self._taken_by is not Holder.MUSTER and does is Wants.IDLE and now >= self._taken_s + self._while_s:
             self._taken_by = Holder.MUSTER
         if self._taken_by is not Holder.MUSTER:
             does = None
@@ -158,11 +164,11 @@ class PoseCustody:
         """IDLE: it stands; ORDER: it moves, wherever to; None: that is not known yet."""
         if not self._track:
             return None
-        newest_s, place, heading = self._track[-1]
+        place, heading = self._here
         for _, before, faced in self._track:
-            if math.dist(place, before) > _MOVED_M or abs(float(wrapped(heading - faced))) > _TURNED_RAD:
+            if math.dist(place, before) > _MOVED_M or abs(math.remainder(heading - faced, math.tau)) > _TURNED_RAD:
                 return Wants.ORDER
-        return Wants.IDLE if newest_s - self._track[0][0] >= self._again_s else None
+        return Wants.IDLE if self._heard_s - self._track[0][0] >= self._while_s else None
 
     @property
     def _heard(self) -> tuple[float, float]:
