@@ -3,14 +3,15 @@
 import json
 from urllib.request import Request, urlopen
 
-from muster.mission.records import Settings, record, spec
+from muster.mission.records import record, spec
 from muster.mission.value_types import Number, Text
 from muster.running.fleet_type import FleetType
+from muster_robots.custody_settings import CustodySettings
 from muster_robots.goal_fleet import GoalFleet, RobotPose
 
 
 @record
-class HttpSettings(Settings):
+class HttpSettings(CustodySettings):
     """How the server of the robots is reached."""
 
     url: str = spec(Text(), "address of the server, such as http://10.0.0.2:8000")
@@ -38,7 +39,8 @@ class HttpLink:
 
 
 def open_http(mission, settings, halt, again):
-    return GoalFleet.ready(mission, HttpLink(settings.url), halt, wait_s=settings.wait_s), lambda: None
+    link = HttpLink(settings.url)
+    return GoalFleet.ready(mission, link, halt, wait_s=settings.wait_s, custody=settings), lambda: None
 
 
 HTTP = FleetType(

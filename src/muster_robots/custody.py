@@ -95,7 +95,7 @@ class CustodyLimits:
     troubles_within_s : float
         See `troubles`.
     again_s : float
-        Time after which a command that has no effect is given again.
+        Time after which a command that has no effect is given again; an order each time after twice as long.
     """
 
     silent_after_s: float = 10.0
@@ -108,6 +108,8 @@ class CustodyLimits:
 
 _SEEN_TWICE = 2
 """Reports in a row that count: one may be older than the last command."""
+_MOST_DOUBLED = 4
+"""Times that the time after which an order is given again doubles: a robot that is blocked plans anew each time."""
 
 
 @dataclass
@@ -118,18 +120,24 @@ class Custody:
     ----------
     limits : CustodyLimits
         How long what may last.
+    repeats_orders : bool
+        Whether an order is given again that the robot does not carry out, as other commands are.
     wanted : Wants
         What the robot is to do.
     standing : Standing
         The relation of the robot to Muster now.
     was_piloted : bool
         Whether a pilot with sticks has had the robot: it gets no tasks any more, and the command at the end.
+    repeated : int
+        Times that what is wanted was said again, without effect.
     """
 
     limits: CustodyLimits
+    repeats_orders: bool = False
     wanted: Wants = Wants.IDLE
     standing: Standing = Standing.OURS
     was_piloted: bool = False
+    repeated: int = 0
     _troubles_s: deque[float] = field(default_factory=deque)
     _state_s: float = -math.inf  # of the last report that was counted
     _astray: int = 0  # reports in a row that show another holder
@@ -139,10 +147,15 @@ class Custody:
     _said_s: float = -math.inf
     _is_paused: bool = False  # whether another station lets the robot hold
 
-    def want(self, what: Wants) -> None:
-        """Set what the robot is to do; the bridge gives the command itself the first time."""
+    def want(self, what: Wants, said_s: float | None = None) -> None:
+        """Set what the robot is to do; the bridge gives the command itself the first time, at `said_s`."""
         self.wanted = what
-        self._misfits, self._fits_since_s = 0, None
+        self._misfits, self._fits_since_s, self.repeated = 0, None, 0
+        self._said_s = self._said_s if said_s is None else said_s
+
+    def said(self, now: float) -> None:
+        """Note that what is wanted was said only now: before, it could not be."""
+        self._said_s, self._misfits = now, 0
 
     def suspect(self, now: float) -> None:
         """Let the robot take no part until it has done for a while what is wanted: it did not obey."""
@@ -155,6 +168,12 @@ class Custody:
         while self._troubles_s and self._troubles_s[0] < now - self.limits.troubles_within_s:
             self._troubles_s.popleft()
         return len(self._troubles_s) > self.limits.troubles
+
+    @property
+    def worn_out_words(self) -> str:
+        """Why a robot is put out that was in trouble too often."""
+        limits = self.limits
+        return f"silent, or without an answer, more than {limits.troubles} times in {limits.troubles_within_s:g} s"
 
     @property
     def is_heard(self) -> bool:
@@ -183,11 +202,14 @@ class Custody:
         elif seen.unfit and self.standing is Standing.OURS:
             self.standing = Standing.SUSPECT
         self._settle(seen, now, fits=fits and not elsewhere and not seen.unfit)
-        if elsewhere or self._misfits < _SEEN_TWICE or now < self._said_s + self.limits.again_s:
+        self.repeated = 0 if fits else self.repeated
+        is_order = self.wanted is Wants.ORDER
+        again_s = self.limits.again_s * 2 ** (min(self.repeated, _MOST_DOUBLED) if is_order else 0)
+        if elsewhere or self._misfits < _SEEN_TWICE or now < self._said_s + again_s:
             return None
-        if self.wanted in (Wants.IDLE, Wants.ORDER):
+        if self.wanted is Wants.IDLE or (is_order and not self.repeats_orders):
             return None
-        self._said_s = now
+        self._said_s, self.repeated = now, self.repeated + 1
         return self.wanted
 
     def _is_silent(self, seen: Seen, now: float) -> bool:
@@ -199,6 +221,7 @@ class Custody:
         if self.standing is Standing.SILENT:
             self.standing, self._heard_again_s = Standing.SUSPECT, seen.heard_s
             self._misfits, self._astray, self._fits_since_s = _SEEN_TWICE - 1, 0, None
+            self._said_s = -math.inf  # what was said meanwhile was not heard
         return False
 
     def _is_elsewhere(self, seen: Seen, *, fits: bool) -> bool:

@@ -25,7 +25,7 @@ from muster.mission.value_types import (
     refuse,
 )
 from muster.motion.avoidance_names import AUTO, AVOIDANCE
-from muster_robots.custody import CustodyLimits
+from muster_robots.custody_settings import CustodySettings
 from muster_robots.profiles import PROFILES, profile_help, profiles_of
 
 _POSES = r"(?=.*\{robot\})(?!.*\{robot\}.*\{robot\})/?(\{robot\}|[A-Za-z])(\w|\{robot\})*(/(\w|\{robot\})+)*"
@@ -66,7 +66,7 @@ class _Profiled(Settings):
 
 
 @record
-class RosSettings(_Profiled):
+class RosSettings(_Profiled, CustodySettings):
     """Where robots on ROS are, and when they are waited for no longer."""
 
     namespace: str = spec(
@@ -155,7 +155,7 @@ class Ros2Settings(RosSettings):
 
 
 @record
-class FlightSettings(Settings):
+class FlightSettings(CustodySettings):
     """What Muster may command drones over MAVLink, and its limits."""
 
     arm: bool = spec(
@@ -183,34 +183,17 @@ class FlightSettings(Settings):
     low_battery: float = spec(
         Share(above=0.0, below=1.0), "battery level below which a drone returns", unit="share", default=0.25
     )
-    link_lost_s: float = spec(
+    link_lost_s: float = spec(  # PX4 itself does nothing before (COM_DL_LOSS_T)
         Number(above=0.0),
         "time without any message after which a drone is silent; shorter gaps change nothing",
         default=10.0,
     )
-    silences: int = spec(
-        Whole(),
-        "silences and unanswered commands within two minutes after which a drone is out for good",
-        default=5,
-    )
-    absent_s: float = spec(
-        Number(minimum=0.0),
-        "how long tasks that nobody else does wait for a drone that is silent, or that somebody else has",
-        default=60.0,
-    )
-    released_s: float = spec(
-        Number(above=0.0),
-        "how long a drone must hover after a stick mode before it is Muster's again",
-        default=5.0,
+    settled_s: float = spec(  # heartbeats come once a second
+        Number(above=0.0), "how long a drone that was silent, or in other hands, must do what is wanted", default=3.0
     )
     far_m: float = spec(
         Number(above=0.0), "how far from its start in the mission a drone may stand", default=20.0, option=""
     )
-
-    @property
-    def custody_limits(self) -> CustodyLimits:
-        """The limits of the custody of each drone."""
-        return CustodyLimits(silent_after_s=self.link_lost_s, troubles=self.silences, released_s=self.released_s)
 
 
 @record

@@ -1,7 +1,8 @@
 """A fleet of robots that find their way to goals themselves: what an adapter of another kind of robot is made of.
 
 The adapter states how robots are reached (`RobotLink`). The fleet does the rest: it polls poses, gives goals one after
-the other, each once, and again only where it was not delivered, and notices arrivals and holds (`follower`).
+the other, each once, and again only where it was not delivered or a robot does not do it (`pose_custody`), and notices
+arrivals and holds (`follower`).
 """
 
 from __future__ import annotations
@@ -18,13 +19,18 @@ from muster.mission.model import Event, Mission, Robot
 from muster.mission.system.clock import TIME_ROUNDING_S, Clock, SystemClock
 from muster.motion.port import Place, Telemetry, Waypoint
 from muster.running.live import wait_for_robots
+from muster_robots.custody import Holder
+from muster_robots.custody_settings import CustodySettings
 from muster_robots.follower import Follower
+from muster_robots.pose_custody import PoseCustody, failures
 from muster_robots.pose_port import require_finite, velocity_by
 
 NOT_DELIVERED = (OSError, ValueError)
 """Errors of a link that mean that nothing was delivered or understood: it is tried again. Others end the run."""
 _POLL_S = 0.2
 _STOPS_WITHIN_S = 2.0
+LEASE_S = 10.0
+"""Seconds for which orders hold where a link renews them: planning the rest again may take a few, without a poll."""
 _TURNED_RAD = 0.1
 _Goal = tuple[int, Place | None, float | None]
 _log = logging.getLogger(__name__)
@@ -44,6 +50,8 @@ class RobotPose:
         How old the report is, in seconds: a robot that has fallen silent has the same report, which grows older.
     charge : float, optional
         Share of its battery that is left, 0 to 1.
+    taken_by : str, default ""
+        Who else commands it now, such as "a person with a joystick"; it takes no part until nobody does, and it stands.
     """
 
     x: float
@@ -52,10 +60,15 @@ class RobotPose:
     heading: float = 0.0
     age_s: float = 0.0
     charge: float | None = None
+    taken_by: str = ""
 
 
 class RobotLink(Protocol):
-    """How robots are reached. Each call returns within a second, or raises an error of `NOT_DELIVERED`."""
+    """How robots are reached. Each call returns within a second, or raises an error of `NOT_DELIVERED`.
+
+    A link may have a method `renew(seconds)`: orders hold for so long after each call, and then robots stop by
+    themselves, as Muster may have been killed. It is called before each look at poses.
+    """
 
     def poses(self) -> Mapping[str, RobotPose]:
         """Return what robots report, by their ids; those of which nothing is known are left out."""
@@ -81,6 +94,8 @@ class GoalFleet:
         How they are reached.
     arrival_m : float, default 0.25
         Distance to a way point at which it counts as reached, in metres.
+    custody : CustodySettings, optional
+        How long robots may be silent, in trouble or in other hands; the settings of the fleet, if made from these.
     clock, wait
         Time, and how it is waited for, in seconds; by default the system's.
     """
@@ -91,19 +106,35 @@ class GoalFleet:
         link: RobotLink,
         *,
         arrival_m: float = 0.25,
+        custody: CustodySettings | None = None,
         clock: Clock | None = None,
         wait: Callable[[float], None] = time.sleep,
     ) -> None:
         self._link, self._clock, self._wait = link, SystemClock() if clock is None else clock, wait
+        self._renew: Callable[[float], object] = getattr(link, "renew", lambda _seconds: None)
         self.simulated_time = clock is not None
         self._begun_s, self._polled_s = self._clock.now(), -math.inf
         self._failing: dict[str, str] = {}  # why by robot, "" for the poll; the last to fail is the last
-        flat = mission.dimensions == 2
-        self.ports = {robot.id: GoalPort(robot, arrival_m=arrival_m, flat=flat) for robot in mission.robots}
+        flat, kept = mission.dimensions == 2, custody or CustodySettings()
+        self.limits = kept.limits
+        self.ports = {
+            robot.id: GoalPort(
+                robot, PoseCustody(robot.id, kept.custody_limits), lambda: self.time_s, arrival_m=arrival_m, flat=flat
+            )
+            for robot in mission.robots
+        }
+        self._custodies = [port.custody for port in self.ports.values()]
 
     @classmethod
     def ready(
-        cls, mission: Mission, link: RobotLink, halt: threading.Event, *, wait_s: float = 10.0, arrival_m: float = 0.25
+        cls,
+        mission: Mission,
+        link: RobotLink,
+        halt: threading.Event,
+        *,
+        wait_s: float = 10.0,
+        arrival_m: float = 0.25,
+        custody: CustodySettings | None = None,
     ) -> Self:
         """Return the fleet when each robot of the mission has reported its pose.
 
@@ -112,7 +143,7 @@ class GoalFleet:
         NetworkError
             If one has not within `wait_s` seconds.
         """
-        fleet = cls(mission, link, arrival_m=arrival_m)
+        fleet = cls(mission, link, arrival_m=arrival_m, custody=custody)
         wait_for_robots(fleet, halt, wait_s)
         return fleet
 
@@ -133,15 +164,16 @@ class GoalFleet:
         return {name: why for name, port in self.ports.items() if port.telemetry() is None}
 
     def advance(self, until_s: float) -> Sequence[Event]:
-        """See `Fleet`: returns before, where a way point is passed."""
+        """See `Fleet`: returns before, where a way point is passed, or a robot is put out."""
         while True:
             self._deliver()
             self._wait(max(0.0, min(until_s, self._polled_s + _POLL_S) - self.time_s))
             now = self.time_s + TIME_ROUNDING_S
             passed = now >= self._polled_s + _POLL_S and self._poll()
-            if passed or now >= until_s:
+            events = failures(self._custodies, self.time_s, self.time_s)
+            if passed or events or now >= until_s:
                 self._deliver()
-                return ()
+                return events
 
     def stop(self) -> None:
         """See `Fleet`. A robot that cannot be told is told again for two seconds."""
@@ -160,6 +192,7 @@ class GoalFleet:
     def _poll(self) -> bool:
         """Take in what robots report; returns whether one has passed a way point."""
         try:
+            self._renew(LEASE_S)
             poses = self._link.poses()
         except NOT_DELIVERED as error:
             self._note("", error)
@@ -192,11 +225,14 @@ class GoalFleet:
 class GoalPort:
     """One robot: a `RobotPort`."""
 
-    def __init__(self, robot: Robot, *, arrival_m: float, flat: bool) -> None:
-        self._robot, self._flat = robot, flat
+    def __init__(
+        self, robot: Robot, custody: PoseCustody, clock: Callable[[], float], *, arrival_m: float, flat: bool
+    ) -> None:
+        self._robot, self.custody, self._clock, self._flat = robot, custody, clock, flat
         self._follower = Follower(arrival_m=arrival_m, turned_rad=_TURNED_RAD, flat=flat or robot.kind == "ground")
         self._said: Telemetry | None = None
         self._delivered: _Goal = (0, None, None)
+        self._is_told_again = False
 
     @property
     def robot(self) -> str:
@@ -204,8 +240,8 @@ class GoalPort:
 
     @property
     def is_due(self) -> bool:
-        """Whether the robot is to get an order that was not delivered yet."""
-        return self._wanted != self._delivered
+        """Whether the robot is to get an order that was not delivered yet, or that it does not carry out."""
+        return not self.custody.is_taken and (self._is_told_again or self._wanted != self._delivered)
 
     def send(self, waypoints: Sequence[Waypoint]) -> int:
         """See `RobotPort`.
@@ -216,6 +252,7 @@ class GoalPort:
             If a number of a way point is not finite.
         """
         require_finite(self.robot, waypoints)
+        self.custody.want(self._clock(), goes=bool(waypoints))
         return self._follower.take(waypoints)
 
     def cancel(self) -> int:
@@ -224,7 +261,7 @@ class GoalPort:
 
     def telemetry(self) -> Telemetry | None:
         """See `RobotPort`."""
-        return self._said
+        return self.custody.judged(self._said)
 
     def deliver(self, link: RobotLink) -> None:
         """Send the robot to its next way point, or let it stop; an error of `NOT_DELIVERED` leaves that due."""
@@ -233,9 +270,20 @@ class GoalPort:
             link.stop(self.robot)
         else:
             link.go(self.robot, self._follower.target)
-        self._delivered = wanted
+        self._delivered, self._is_told_again = wanted, False
+        self.custody.told(self._clock())
 
     def hear(self, now: float, pose: RobotPose | None) -> bool:
+        """Take in a report, and see whether the robot obeys; returns whether a way point is passed."""
+        passed = self._take_in(now, pose)
+        if pose is not None and pose.taken_by:
+            self.custody.take(now, Holder.PILOT, pose.taken_by)
+        is_there = self._follower.aim is None or self._follower.stays
+        if self.custody.look(now, is_carried_out=is_there) is not None:
+            self._is_told_again = True
+        return passed
+
+    def _take_in(self, now: float, pose: RobotPose | None) -> bool:
         """Take in a report, if it is new; returns whether a way point is passed."""
         time_s = -math.inf if pose is None else now - pose.age_s
         before = self._said
@@ -243,6 +291,7 @@ class GoalPort:
             return False
         place = (pose.x, pose.y, 0.0 if self._flat else pose.z)
         passed = self._follower.hear(now, place, pose.heading)
+        self.custody.hear(time_s, place, pose.heading)
         order = self._delivered[0]
         self._said = Telemetry(
             time_s,

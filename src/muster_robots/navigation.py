@@ -18,9 +18,10 @@ _PATIENCE_S = 5.0
 
 @dataclass(frozen=True)
 class Ended:
-    """The end of a goal; `reason` why the robot does not get there, empty where it did."""
+    """The end of a goal; `reason` why the robot does not get there, empty where it did; or others have ended it."""
 
     reason: str = ""
+    by_others: bool = False
 
 
 @dataclass(frozen=True)
@@ -85,6 +86,8 @@ class NavigationGoals(Generic[G]):
         The action's name in reasons, such as "move_base".
     """
 
+    reports = True
+
     def __init__(self, navigator: Navigator[G], name: str) -> None:
         self._navigator, self._name = navigator, name
         self._wanted: G | None = None
@@ -111,8 +114,8 @@ class NavigationGoals(Generic[G]):
         self._send()
 
     def withdraw(self, here: G | None) -> bool:
-        """Cancel the goal: the robot brakes by itself; returns that this was sent."""
-        self._wanted = None
+        """Cancel the goal, as often as this is called: the robot brakes by itself; returns that this was sent."""
+        self._wanted, self._cancelled = None, False
         self._cancel()
         return True
 
@@ -163,6 +166,7 @@ class NavigationGoals(Generic[G]):
         if under_way and (lost or (outcome.status != "canceled" and self._tries < _TRIES)):
             self._wanted, self._tries = self._sent, self._tries - lost
             return None
-        by = " by somebody else" if outcome.status == "canceled" else ""
+        by_others = outcome.status == "canceled"
+        by = " by somebody else" if by_others else ""
         detail = f" ({outcome.detail})" if outcome.detail else ""
-        return Ended(f"{self._name}: {outcome.status}{by}{detail}")
+        return Ended(f"{self._name}: {outcome.status}{by}{detail}", by_others)

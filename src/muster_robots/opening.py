@@ -51,11 +51,12 @@ def ros2_fleet(mission: Mission, settings: Ros2Settings, **more: Any) -> Any:
         poses=settings.poses,
         use_sim_time=settings.use_sim_time,
         joins=not settings.known_only,
+        custody=settings,
         **more,
     )
 
 
-def open_mavlink(mission: Mission, settings: MavlinkSettings, _halt: threading.Event, again: bool) -> Opened:
+def open_mavlink(mission: Mission, settings: MavlinkSettings, halt: threading.Event, again: bool) -> Opened:
     from muster_robots.mavlink import MavlinkFleet
 
     if not settings.arm:
@@ -72,7 +73,7 @@ def open_mavlink(mission: Mission, settings: MavlinkSettings, _halt: threading.E
     except BaseException:
         fleet.close()
         raise
-    return fleet, _nothing if settings.at_end == "hold" else partial(fleet.end, settings.at_end)
+    return fleet, partial(fleet.finish, settings.at_end, halt.is_set)
 
 
 def _heard(fleet: Any, wait_s: float, halt: threading.Event, needed: str = "its pose", *, some: bool = False) -> Fleet:

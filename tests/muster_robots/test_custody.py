@@ -54,6 +54,14 @@ def test_orders_are_given_by_whoever_has_them(wanted):
     assert wanting(wanted).see(Wants.HOLD, seconds=10) == []
 
 
+def test_an_order_is_said_again_where_that_is_asked_for_and_each_time_after_twice_as_long():
+    watch = wanting(Wants.ORDER, again_s=2.0)
+    watch.custody.repeats_orders = True
+    assert watch.see(Wants.IDLE, seconds=31) == [Wants.ORDER] * 4  # at 2, 6, 14 and 30 s
+    watch.see(Wants.ORDER)
+    assert watch.see(Wants.IDLE, seconds=4) == [Wants.ORDER]
+
+
 @pytest.mark.parametrize(("gap_s", "silent"), [(2, False), (5, False), (9, False), (11, True), (20, True)])
 def test_a_gap_is_a_state_that_ends(gap_s, silent):
     watch = wanting(Wants.ORDER)

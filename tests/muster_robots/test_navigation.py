@@ -66,7 +66,7 @@ def test_a_goal_that_is_given_up_is_refused_with_the_words(navigator, outcome, g
     while ended is None:
         navigator.last.outcome = outcome
         ended = goals.hear(0.0, under_way=True)
-    assert ended == Ended(reason)
+    assert ended == Ended(reason, by_others=outcome.status == "canceled")
     assert navigator.given == ["there"] * given
 
 

@@ -86,6 +86,29 @@ def test_an_order_is_on_disk_before_a_robot_has_it(path, there, plan):
     assert all(seen)
 
 
+def test_what_each_robot_was_to_do_is_known_after_a_kill(path, there, plan):
+    """Before it is sent somewhere, and before it is told to stay or to do what robots do at the end."""
+    fleet, told = WorldAsFleet(there), []
+    stop = fleet.stop
+    fleet.stop = lambda: (told.append(read_journal(path).wanted), stop())
+    journal = begun(path, there, plan)
+    halt = threading.Event()
+
+    def on_event(event):
+        if event.kind == "sets_out" and len(told) == 0:
+            told.append(read_journal(path).wanted)
+
+    muster.carry_out(there, plan, fleet, halt=halt, on_event=on_event, journal=journal)
+    journal.on_last_order("return")
+    journal.close()
+    assert all(words.startswith("go to (") and " for t_" in words for words in told[0].values())
+    assert told[-1] == {"r_0": "stay", "r_1": "stay"}
+    found = read_journal(path)
+    assert found.wanted == {"r_0": "return", "r_1": "return"}
+    assert found.at_end == "return"
+    assert found.state(there).ended_s is not None  # what is wanted is no event of the mission
+
+
 @pytest.mark.parametrize("cut", [1, 9, 40])
 def test_a_last_line_that_is_cut_short_is_left_out_and_written_over(cut, path, there, plan):
     fleet = WorldAsFleet(there)

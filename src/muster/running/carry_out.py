@@ -64,8 +64,16 @@ def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: Obser
             report = brought_home(mission, plan, robots, request)
         else:
             report = carry_out_live(mission, plan, robots, request, recorder=recorder)
+            _note_last_order(request)
         at_end()
     return replace(report, remarks=(*report.remarks, *remarks))
+
+
+def _note_last_order(request: ObservedRun) -> None:
+    """Write what robots do at the end, of fleets that have that as a setting, unless they stay where they are."""
+    at_end = getattr(request.settings, "at_end", "hold")
+    if request.journal is not None and at_end != "hold" and not (request.halt and request.halt.is_set()):
+        request.journal.on_last_order(at_end)
 
 
 carry_out = keywords_of_run.with_fleet(carried_out)

@@ -60,8 +60,8 @@ class FleetWithMissionClock:
         self._fleet, self._off_s = fleet, fleet.time_s - begin_s
         self._wall, self._zero_s = wall, 0.0 if wall is None else wall.now() - begin_s
         self._was_paused = False
-        orders = None if before_order is None else partial(self._tell_order, before_order)
-        self.ports: Mapping[str, RobotPort] = _Ports(fleet, lambda: self._off_s, orders)
+        self._orders = None if before_order is None else partial(self._tell_order, before_order)
+        self.ports: Mapping[str, RobotPort] = _Ports(fleet, lambda: self._off_s, self._orders)
 
     @property
     def time_s(self) -> float:
@@ -78,6 +78,10 @@ class FleetWithMissionClock:
         return self._fleet.advance(self._fleet.time_s + until_s - self.time_s)
 
     def stop(self) -> None:
+        """See `Fleet`; that each robot is to stay is an order, too."""
+        if self._orders is not None:
+            for robot in self._fleet.ports:
+                self._orders(robot, ())
         self._fleet.stop()
 
     def close(self) -> None:

@@ -18,7 +18,7 @@ from muster.mission.plan import Plan
 from muster.motion.port import Waypoint
 from muster.running.journal_file import Header, JournalFile, ReadJournal, SparedFile, read_journal
 from muster.state import MissionState, event_of
-from muster.state.recovery import ORDER
+from muster.state.recovery import ORDER, WANTED
 from muster.state.robot_events import FinalStates
 from muster.state.run_events import PlanAdopted
 
@@ -93,7 +93,7 @@ class Journal(NoObserver):
         if self.plan is not None and self.state is not None:
             others.on_plan(0.0, self.plan)
             for entry in self._told:
-                if entry["kind"] not in (PlanAdopted.kind, ORDER):
+                if entry["kind"] not in (PlanAdopted.kind, ORDER, WANTED):
                     others.on_event(entry["time_s"], entry["kind"], entry["data"])
         return Recorders(self, others)
 
@@ -118,6 +118,11 @@ class Journal(NoObserver):
     def on_order(self, now: float, robot: str, waypoints: Sequence[Waypoint]) -> None:
         """Write an order and sync all, before it is sent; without way points the robot stays where it is."""
         self._write(now, ORDER, order_data(robot, waypoints))
+        self._file.sync()
+
+    def on_last_order(self, at_end: str) -> None:
+        """Write what robots do when all is done, and sync it, before they are told: such as `return`, or `land`."""
+        self._write(self._known.now_s, WANTED, {"at_end": at_end})
         self._file.sync()
 
     def end(self, states: Sequence[FinalState]) -> None:

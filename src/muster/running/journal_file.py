@@ -27,7 +27,7 @@ from muster.mission.value_types import shown
 from muster.mission.yaml_writer import plain
 from muster.report.record.json_messages import json_bytes
 from muster.state import MissionState
-from muster.state.recovery import ORDER, recovered_from
+from muster.state.recovery import ORDER, WANTED, recovered_from
 from muster.state.task_events import Ends
 
 SCHEMA = "muster-journal/1"
@@ -137,6 +137,17 @@ class ReadJournal:
         """The robots that were sent anywhere."""
         return {entry["data"]["robot"] for entry in self.entries if entry["kind"] == ORDER and entry["data"]["to"]}
 
+    @property
+    def at_end(self) -> str:
+        """What robots were to do when all was done, if the run had come to that; empty: it had not."""
+        return next((str(entry["data"]["at_end"]) for entry in self.entries if entry["kind"] == WANTED), "")
+
+    @property
+    def wanted(self) -> dict[str, str]:
+        """What each robot was to do last, in words: by its last order, and what robots do when all is done."""
+        last = {entry["data"]["robot"]: entry["data"] for entry in self.entries if entry["kind"] == ORDER}
+        return {robot: self.at_end or _order_in_words(order) for robot, order in sorted(last.items())}
+
     def is_of(self, mission: Mission) -> bool:
         """Whether the run carried out this mission."""
         return self.header.parts == parts_of(mission)
@@ -164,6 +175,13 @@ class ReadJournal:
 
     def _refusal(self, field: str, value: str, expected: str) -> InputError:
         return InputError([Finding(str(self.path), None, field, value, expected)])
+
+
+def _order_in_words(order: Mapping[str, Any]) -> str:
+    if order["to"] is None:
+        return "stay"
+    tasks = f" for {', '.join(order['for'])}" if order["for"] else ""
+    return f"go to ({', '.join(f'{c:.2f}' for c in order['to'])}){tasks}"
 
 
 def _last(kinds: list[str], kind: str) -> int:

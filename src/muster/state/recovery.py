@@ -13,7 +13,9 @@ from muster.state.mission_state import MissionState
 
 ORDER = "order"
 """The kind of entries that say where a robot is sent: written before it is sent there."""
-_OF_THE_RUN = ("report", "command", ORDER)
+WANTED = "wanted"
+"""The kind of entries that say what robots are to do at the end: written before they are told."""
+_OF_THE_RUN = ("report", "command", ORDER, WANTED)
 """Kinds of log entries that are no events of the mission."""
 
 

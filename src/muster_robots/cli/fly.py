@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from functools import partial
@@ -16,7 +15,7 @@ from muster.mission.errors import MusterError, ParameterError
 from muster.mission.model import Mission
 from muster.mission.plan import Plan, json_text
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts, signals_interrupt
-from muster_robots.cli.going_on import GoingOn, going_on, recovered
+from muster_robots.cli.going_on import GoingOn, as_wanted, going_on, recovered
 from muster_robots.cli.last_lines import LastLines, show_final_states
 from muster_robots.cli.real_robots import (
     carried_out,
@@ -33,7 +32,6 @@ from muster_robots.fleet_settings import MavlinkSettings
 if TYPE_CHECKING:
     from muster.execution.final_state import FinalState
     from muster_robots.mavlink import MavlinkFleet
-    from muster_robots.mavlink.autopilots import AtEnd
     from muster_robots.mavlink.dry_run import Line
 
 
@@ -52,7 +50,9 @@ def command(mission: MissionFile, options: RealRunOptions) -> int:
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
-    given, settings, how = read_given_plan(options, loaded), options.request.settings, going_on(options, loaded)
+    given, how = read_given_plan(options, loaded), going_on(options, loaded)
+    options = as_wanted(options, how)
+    settings = options.request.settings
     with ExitStack() as stack:
         stack.enter_context(robots_claimed(claims_of_request(options.request)))
         made = MavlinkFleet(loaded, settings.endpoints, settings, height_m=settings.height_m)
@@ -143,25 +143,14 @@ def _degrees(value: float | None) -> str:
 
 
 def _fly(plan: Plan | None, fleet: MavlinkFleet, how: GoingOn, options: RealRunOptions) -> int:
-    at_end: AtEnd = options.request.settings.at_end
-
     def states() -> list[FinalState]:
         return how.judged(fleet.final_states())
 
     with ctrl_c_halts(TO_END) as halt:
         if how.recovers:
             return recovered(how, fleet, options, halt, lambda: None)
-        end = partial(_end, fleet, at_end, halt)
+        end = partial(fleet.finish, options.request.settings.at_end, halt.is_set)
         report = carried_out(how.mission, plan, fleet, how, options, halt, states, at_end=end)
     for fault in fleet.faults:
         click.echo(str(fault), err=True)
     return reported(how.mission, report, options, halt, "drones were told to hover", states())
-
-
-def _end(fleet: MavlinkFleet, at_end: AtEnd, halt: threading.Event) -> None:
-    """Give the order of --at-end to all drones; without one they hover."""
-    if at_end != "hold" and not halt.is_set():
-        fleet.end(at_end)
-        fleet.await_landing(halt.is_set)
-        if halt.is_set():  # Ctrl-C meanwhile
-            fleet.stop()

@@ -137,6 +137,14 @@ def going_on(options: RealRunOptions, mission: Mission, more_claims: Collection[
     return replace(found, path=before.path, before=before)
 
 
+def as_wanted(options: RealRunOptions, how: GoingOn) -> RealRunOptions:
+    """Return the options with what robots were to do at the end, where the run before had come to that."""
+    settings, before = options.request.settings, how.before
+    if before is None or not how.resumes or not before.at_end or getattr(settings, "at_end", None) != "hold":
+        return options
+    return replace(options, request=replace(options.request, settings=replace(settings, at_end=before.at_end)))
+
+
 def _named(asked: str, place: Path) -> Path:
     """The journal that --resume names; where it names the record of the last run, that run's journal."""
     from muster.running.journal_file import read_journal
@@ -181,7 +189,8 @@ def kept_journal(how: GoingOn, plan: Plan, options: RealRunOptions) -> Iterator[
         told = "by it --resume goes on with the run if it is interrupted"
     else:
         journal = Journal.resumed(how.before, how.mission, say)
-        told = f"goes on with the run of {how.before.header.name}, {how.before.progress}"
+        wanted = "".join(f"; {robot} was to {what}" for robot, what in how.before.wanted.items())
+        told = f"goes on with the run of {how.before.header.name}, {how.before.progress}{wanted}"
     if not options.quiet:
         say(f"journal: {how.path}: {told}")
     try:

@@ -8,7 +8,7 @@ from muster.cli.options.common import MissionFile, mission_argument
 from muster.mission.records import key_of, required, specified
 from muster.mission.system.interrupts import TO_END, ctrl_c_halts
 from muster.running.fleet_registry import FLEETS
-from muster_robots.cli.going_on import going_on, left_robots_told
+from muster_robots.cli.going_on import as_wanted, going_on, left_robots_told
 from muster_robots.cli.real_robots import (
     carried_out_from_here,
     read_given_plan,
@@ -63,15 +63,10 @@ def command(mission: MissionFile, options: RealRunOptions) -> int:
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
     given, how = read_given_plan(options, loaded), going_on(options, loaded)
+    options = as_wanted(options, how)
     with (
         ctrl_c_halts(TO_END) as halt,
         left_robots_told(how),
         claimed_fleet(loaded, options.request, halt, again=how.again) as (fleet, at_end),
     ):
-
-        def end() -> None:
-            at_end()
-            if (await_landing := getattr(fleet, "await_landing", None)) is not None:
-                await_landing(halt.is_set)
-
-        return carried_out_from_here(fleet, given, how, options, halt, end)
+        return carried_out_from_here(fleet, given, how, options, halt, at_end)

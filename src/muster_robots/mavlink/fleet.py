@@ -109,7 +109,7 @@ class MavlinkFleet:
     @property
     def limits(self) -> Limits:
         """How long a drone may be silent, and how long the mission waits for one that is absent."""
-        return Limits(silent_after_s=self._settings.link_lost_s, absent_for_s=self._settings.absent_s)
+        return self._settings.limits
 
     @property
     def faults(self) -> list[Fault]:
@@ -171,12 +171,18 @@ class MavlinkFleet:
                     if why := session.refusal([waypoint.position for waypoint in flown]):
                         yield robot.id, task.id, f"{Kind.OUTSIDE_FENCE.words}: {why}"
 
-    def recover(self, at_end: AtEnd, halted: Callable[[], bool]) -> None:
-        """Let every drone that is Muster's return and land, or land where it is, and wait until drones are disarmed."""
-        self.end("return" if at_end == "hold" else at_end)
+    def finish(self, at_end: AtEnd, halted: Callable[[], bool]) -> None:
+        """Give all drones the last order, and wait until they have landed; at `halted` they hover. `hold`: nothing."""
+        if at_end == "hold" or halted():
+            return
+        self.end(at_end)
         self.await_landing(halted)
         if halted():
             self.stop()
+
+    def recover(self, at_end: AtEnd, halted: Callable[[], bool]) -> None:
+        """Let every drone that is Muster's return and land, or land where it is, and wait until drones are disarmed."""
+        self.finish("return" if at_end == "hold" else at_end, halted)
 
     def advance(self, until_s: float) -> Sequence[Event]:
         """Receive and send; reports each drone with a fault once (`robot_fails`). Raises what has ended the thread."""

@@ -305,9 +305,7 @@ class Session:
         elif self._suspended is None and (unfit := self.drone.seen(busy=self.busy).unfit):
             self._suspend(Kind.NO_POSITION, now, unfit)
         if self.custody.is_worn_out(now):
-            limits = self.custody.limits
-            often = f"silent, or without an answer, more than {limits.troubles} times in {limits.troubles_within_s:g} s"
-            raise FaultError(Kind.LINK_LOST, often)
+            raise FaultError(Kind.LINK_LOST, self.custody.worn_out_words)
 
     def _suspend(self, kind: Kind, now: float, detail: str = "") -> None:
         """Somebody else has it, or it does not know where it is: it takes no part for now, and keeps its order not."""

@@ -24,6 +24,7 @@ from muster.motion.port import Place
 from muster.perception.robot_grids import RobotGrid
 from muster_robots.discovery import NAME, pose_topics, topics_in
 from muster_robots.fleet_settings import Ros1Settings
+from muster_robots.pose_custody import failures
 from muster_robots.ros1.clock import MissionClock
 from muster_robots.ros1.joining import Ros1Newcomers
 from muster_robots.ros1.map_frame import MapFrame
@@ -38,7 +39,7 @@ from muster_robots.yielding import Yielding
 
 _LOOK_S = 0.5
 _HEARD_S = 0.5
-"""A robot that is silent for longer gets the command to stand; one with navigation of its own (move_base) does not."""
+"""A robot that takes velocities stands when it is silent for longer; one that has a goal finds its way itself."""
 _TICK_S = 0.01
 """Real time between two looks at the clock: a simulator's may go faster than real time, or stand."""
 
@@ -76,6 +77,7 @@ class Ros1Fleet:
         self._now = time_of_ros()
         self.clock = clock or MissionClock(self._now)
         self.simulated_time = isinstance(self._now, Forward)
+        self.limits, self._custody_limits = how.limits, how.custody_limits
         self._drive, self._arrival_m, self._interval_s = how.drive, how.arrival_m, 1 / how.rate_hz
         self.topics = topics_in(how.namespace)
         """The namespace of a robot's topics, such as `/r_0`."""
@@ -133,7 +135,8 @@ class Ros1Fleet:
         self._require_steered()
         with self._lock:
             events, self._events = self._events, []
-        return events
+            custodies = [port.custody for port in self._ports.values()]
+            return events + failures(custodies, self.clock.unpaused_s, self.time_s)
 
     def report(self, event: Event) -> None:
         """Add an event from elsewhere to those that `advance` returns."""
@@ -227,6 +230,7 @@ class Ros1Fleet:
             pose_topic=self._pose_topic(robot.id),
             on_pass=self._news.set,
             on_pose=self._on_pose,
+            limits=self._custody_limits,
         )
 
     def _all(self) -> dict[str, Ros1Port]:
@@ -272,7 +276,7 @@ class Ros1Fleet:
                     self._tell_all(Ros1Port.stand)
 
     def _steer(self) -> None:
-        within_s = _HEARD_S if self._drive in ("cmd_vel", "goals") else math.inf
+        within_s = _HEARD_S if self._drive == "cmd_vel" else math.inf
         steered_robots = [port.steered(within_s=within_s, paused=self.clock.paused) for port in self._ports.values()]
         present = [steered for steered in steered_robots if steered is not None]
         team = self._yielding.arranged(self.clock.unpaused_s, present)

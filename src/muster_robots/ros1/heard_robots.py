@@ -9,9 +9,10 @@ from typing import Any
 from muster.mission.errors import MusterError
 from muster.mission.model import Robot
 from muster.mission.yaml_writer import plain
+from muster_robots.custody_settings import CustodySettings
 from muster_robots.ros1.parameter_descriptions import robot_from_parameters
 
-_SILENT_S = 5.0
+_SILENT_S = CustodySettings.link_lost_s
 
 
 def robots_heard(

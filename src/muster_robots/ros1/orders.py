@@ -20,8 +20,6 @@ from muster_robots.steering import STILL, Velocity
 Drive = Literal["cmd_vel", "goals", "move_base", "move_base_simple"]
 _TOLD_STILL_S = 1.0
 """Seconds for which a robot without way points gets zero velocities; after that a person may drive it."""
-_AGAIN_S = 1.0
-"""Seconds after which a goal on WP is given again, for those that did not hear it."""
 _SIMPLE = "move_base_simple/goal"
 
 
@@ -64,6 +62,13 @@ class Orders(Protocol):
 
     expected: str
     """Who is to receive them, in words."""
+    reports: bool
+    """Whether the robot's navigation says when a goal has ended."""
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether no goal is known to be under way."""
+        ...
 
     @property
     def received(self) -> bool:
@@ -76,6 +81,10 @@ class Orders(Protocol):
 
     def speak(self, course: Course) -> Ended | None:
         """Say what is due; return how the robot's own navigation ended, once, where it says so."""
+        ...
+
+    def repeat(self) -> None:
+        """Let the next `speak` give the goal once more."""
         ...
 
     def stand(self, now_s: float, place: Place, said: Telemetry | None) -> None:
@@ -106,16 +115,18 @@ def orders_for(drive: Drive, topics: str, frame: str, now: Callable[[], float], 
     if drive == "cmd_vel":
         return VelocityOrders(topics)
     if drive == "goals":
-        return GoalOrders(f"{topics}/WP", frame, again_s=_AGAIN_S)
+        return GoalOrders(f"{topics}/WP", frame)
     if drive == "move_base_simple":
-        return GoalOrders(f"{topics}/{_SIMPLE}", frame, again_s=math.inf)
+        return GoalOrders(f"{topics}/{_SIMPLE}", frame)
     from muster_robots.ros1.move_base import MoveBaseNavigator
 
     return ActionOrders(MoveBaseNavigator(f"{topics}/move_base", now, lock), f"{topics}/move_base", frame)
 
 
 class VelocityOrders:
-    """Velocities on `<robot>/cmd_vel`."""
+    """Velocities on `<robot>/cmd_vel`, which are said all the time."""
+
+    at_rest, reports = True, False
 
     def __init__(self, topics: str) -> None:
         self.expected = f"a subscriber of {topics}/cmd_vel (geometry_msgs/Twist)"
@@ -135,6 +146,9 @@ class VelocityOrders:
         if course.now_s - self._stood_s <= _TOLD_STILL_S:
             publish(self._publisher, twist_of(course.velocity))
 
+    def repeat(self) -> None:
+        """The next velocity comes anyway."""
+
     def stand(self, now_s: float, place: Place, said: Telemetry | None) -> None:
         self._stood_s = now_s
         publish(self._publisher, twist_of(STILL))
@@ -149,28 +163,27 @@ class VelocityOrders:
 class _Goals(ABC):
     """Base of orders that are goals: which way point was given, and with which heading."""
 
-    def __init__(self, frame: str, again_s: float) -> None:
-        self._frame, self._again_s = frame, again_s
+    def __init__(self, frame: str) -> None:
+        self._frame = frame
         self._given: tuple[int, int] | None = None
         self._aim: Place | None = None
-        self._given_s = -math.inf
-        self._facing = 0.0  # of the goal that was given, where its way point asks for no heading
 
     def begin(self, now_s: float) -> None:  # noqa: B027 - nothing is said before
         """Goals are given by `speak`."""
 
     def _follow(self, course: Course) -> None:
-        """Give the goal of a course where it is new, or due again; let the robot stand where it has none."""
+        """Give the goal of a course where it is new; let the robot stand where it has none."""
         aim = course.aim
         if aim is None:
             if self._given is not None and (not course.waits or self._given == course.at):
                 self.stand(course.now_s, course.place, course.said)  # paused, not heard, or back from making room
             return
-        new = (self._given, self._aim) != (course.at, aim.position)
-        if new or course.now_s - self._given_s > self._again_s:
-            self._facing = goal_heading(aim, course.said) if new else self._facing
-            self._give(pose_stamped(self._frame, course.place, self._facing if aim.heading is None else aim.heading))
-            self._given, self._aim, self._given_s = course.at, aim.position, course.now_s
+        if (self._given, self._aim) != (course.at, aim.position):
+            self._give(pose_stamped(self._frame, course.place, goal_heading(aim, course.said)))
+            self._given, self._aim = course.at, aim.position
+
+    def repeat(self) -> None:
+        self._given = None
 
     def stand(self, now_s: float, place: Place, said: Telemetry | None) -> None:
         self._given = None
@@ -188,8 +201,10 @@ class _Goals(ABC):
 class GoalOrders(_Goals):
     """Goals as geometry_msgs/PoseStamped on a topic, latched; to stand, the robot's goal becomes where it is."""
 
-    def __init__(self, topic: str, frame: str, *, again_s: float) -> None:
-        super().__init__(frame, again_s)
+    at_rest, reports = True, False
+
+    def __init__(self, topic: str, frame: str) -> None:
+        super().__init__(frame)
         self.expected = f"a subscriber of {topic} (geometry_msgs/PoseStamped)"
         self._publisher = rospy.Publisher(topic, PoseStamped, queue_size=1, latch=True)
 
@@ -217,11 +232,17 @@ class GoalOrders(_Goals):
 class ActionOrders(_Goals):
     """Goals of the action `move_base`, which are cancelled where the robot is to stand."""
 
+    reports = True
+
     def __init__(self, navigator: Any, action: str, frame: str) -> None:
-        super().__init__(frame, again_s=math.inf)
+        super().__init__(frame)
         self.expected = f"an action server of {action} (move_base_msgs/MoveBaseAction)"
         self._navigator = navigator
         self._goals: NavigationGoals[Any] = NavigationGoals(navigator, "move_base")
+
+    @property
+    def at_rest(self) -> bool:
+        return self._goals.at_rest
 
     @property
     def received(self) -> bool:

@@ -14,9 +14,11 @@ from typing import Any
 from muster.mission.model import Robot
 from muster.motion.frames import Floats
 from muster.motion.port import Place, Telemetry, Waypoint
+from muster_robots.custody import CustodyLimits, Holder, Wants
 from muster_robots.follower import Follower
 from muster_robots.navigation import Ended
-from muster_robots.pose_port import Attention, require_finite
+from muster_robots.pose_custody import PoseCustody
+from muster_robots.pose_port import require_finite
 from muster_robots.ros1.clock import MissionClock
 from muster_robots.ros1.map_frame import MapFrame
 from muster_robots.ros1.message_conversion import place_and_heading, tf_of
@@ -47,6 +49,8 @@ class Ros1Port:
         called when a way point is passed.
     on_pose
         called with the robot and each message that gave a pose.
+    limits
+        those of its custody.
     """
 
     def __init__(
@@ -63,6 +67,7 @@ class Ros1Port:
         pose_topic: str | None = None,
         on_pass: Callable[[], None],
         on_pose: Callable[[str, Any], None] | None = None,
+        limits: CustodyLimits | None = None,
     ) -> None:
         self.body = robot
         self._frame, self._flat, self._lock = frame, flat, lock
@@ -74,7 +79,13 @@ class Ros1Port:
         self._commanded = False  # whether it was ever sent anywhere
         self._refused = ""
         self._orders = orders_for(drive, topics, frame.name, lambda: clock.unpaused_s, lock)
-        self._attention = Attention(robot.id, self._orders.expected, lambda: self._orders.received)
+        self.custody = PoseCustody(
+            robot.id,
+            limits or CustodyLimits(),
+            self._orders.expected,
+            lambda: self._orders.received,
+            lets_go=not self._orders.reports,
+        )
         self._listener = PoseListener(topics, frame, self._hear, pose_topic=pose_topic)
 
     @property
@@ -94,6 +105,8 @@ class Ros1Port:
             order = self._follower.take(waypoints)
             self._refused = ""
             self._commanded = self._commanded or bool(waypoints)
+            if not self._commanded or not self.custody.want(self._clock.unpaused_s, goes=bool(waypoints)):
+                return order
             if waypoints:
                 self._orders.begin(self._clock.unpaused_s)
             else:
@@ -109,11 +122,11 @@ class Ros1Port:
         """What is missing of what it takes to drive it, and what is expected; empty if nothing is."""
         if self._last_word is None:
             return self._listener.untied or f"nothing on {self._listener.expected}"
-        return self._attention.missing
+        return self.custody.missing
 
     def telemetry(self) -> Telemetry | None:
         """See `RobotPort`."""
-        return self._attention.judged(self._last_word)
+        return self.custody.judged(self._last_word)
 
     def steered(self, *, within_s: float, paused: bool) -> SteeredRobot | None:
         """How it is to be steered; None if nothing is known of it. A robot that is silent for a while stands."""
@@ -134,10 +147,13 @@ class Ros1Port:
         under_way = follower.aim is not None and not follower.stays
         place = self._goal(said.position if steered.aim is None else steered.aim.position)
         at = (follower.order, follower.passed)
-        course = Course(now, at, steered.aim, place, velocity, said, follower.aim is None, under_way)
+        aim = None if self.custody.is_taken else steered.aim
+        course = Course(now, at, aim, place, velocity, said, follower.aim is None, under_way)
         ended = self._orders.speak(course)
         if ended is not None and under_way:
             self._take_end(ended, said)
+        is_done = steered.aim is None or follower.stays or bool(self._refused) or not self._orders.at_rest
+        self._tell_again(self.custody.look(now, is_carried_out=is_done))
         for pose in self._orders.poses():
             self._listener.hear_fix(pose)
 
@@ -165,8 +181,25 @@ class Ros1Port:
         self._listener.close()
         self._orders.close()
 
+    def _tell_again(self, what: Wants | None) -> None:
+        """Tell it once more what it does not do, unless it does what somebody else wants."""
+        if what is Wants.ORDER:
+            self._orders.repeat()
+        elif self._orders.reports and self._orders.at_rest and self.custody.moves_by_others:
+            self._leave("it moves by no goal of Muster's")
+        elif what is Wants.HOLD:
+            self.stand()
+
+    def _leave(self, why: str) -> None:
+        """Leave it to somebody else, who has it."""
+        self.custody.take(self._clock.unpaused_s, Holder.STATION, why)
+        self._on_pass()
+
     def _take_end(self, ended: Ended, said: Telemetry) -> None:
         """Take in that its navigation has arrived, or why it does not get there."""
+        if ended.by_others:
+            self._leave(ended.reason)
+            return
         self._refused = ended.reason
         if ended.reason:
             self._last_word = replace(said, refused=ended.reason)
@@ -190,6 +223,7 @@ class Ros1Port:
             self._heard_s = heard_s
             now = self._clock.time_s
             passed = self._follower.hear(now, place, heading)
+            self.custody.hear(heard_s, place, heading, now)
             told = self._follower
             counted = told.odometry_m, told.order, told.passed
             self._last_word = Telemetry(now, place, heading, velocity, *counted, refused=self._refused)

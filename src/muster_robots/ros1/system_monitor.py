@@ -15,6 +15,7 @@ from typing import Any
 
 from muster.motion.frames import Floats
 from muster.motion.port import Place
+from muster_robots.custody_settings import CustodySettings
 from muster_robots.discovery import robots_in
 from muster_robots.odometer import Odometer
 from muster_robots.ros1.map_frame import MapFrame
@@ -26,7 +27,7 @@ from muster_robots.ros1.ros import String, rospy
 _REPORT_S = 0.5
 _READ_S = 0.1
 """Least time between two poses that are decoded: a person watches, and decoding costs more than receiving."""
-_SILENT_S = 5.0
+_SILENT_S = CustodySettings.link_lost_s
 """A robot that is silent for longer is not available."""
 
 

@@ -18,7 +18,9 @@ from muster.mission.errors import NetworkError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.system.clock import Clock, SystemClock
 from muster.perception.robot_grids import RobotGrid
+from muster_robots.custody_settings import CustodySettings
 from muster_robots.discovery import pose_topics, topics_in
+from muster_robots.pose_custody import failures
 from muster_robots.ros2.goals import Goals, Nav2Goals, PoseGoals
 from muster_robots.ros2.joining import Ros2Newcomers
 from muster_robots.ros2.map_frame import MAP_FRAME, Ros2MapFrame
@@ -70,6 +72,8 @@ class Ros2Fleet:
         how tags that robots' cameras see are found; None: cameras are not heard.
     joins
         whether robots that the mission does not name may join.
+    custody
+        how long robots may be silent, in trouble or in other hands.
 
     Raises
     ------
@@ -91,10 +95,13 @@ class Ros2Fleet:
         use_sim_time: bool = False,
         targets: SearchSettings | None = None,
         joins: bool = True,
+        custody: CustodySettings | None = None,
         clock: Clock | None = None,
     ) -> None:
         self._namespace, self._topics, self._pose_topic = namespace, topics_in(namespace), pose_topics(poses)
         self._give, self._arrival = give, arrival or Arrival()
+        kept = custody or CustodySettings()
+        self.limits, self._custody_limits = kept.limits, kept.custody_limits
         self._flat = mission.dimensions == 2
         self._middleware = open_middleware() if middleware is None else middleware
         self._simulator = SimulatorClock(self._middleware) if use_sim_time else None
@@ -127,12 +134,13 @@ class Ros2Fleet:
         return self._clock.now() - self._begin
 
     def advance(self, until_s: float) -> Sequence[Event]:
-        """See `Fleet`: returns before, where a way point is passed or a robot joins."""
+        """See `Fleet`: returns before, where a way point is passed, or a robot joins or is put out."""
         real_until = time.monotonic() + until_s - self.time_s
         while True:
             self._middleware.wait(max(0.0, min(until_s - self.time_s, _POLL_S)))
             passed = self._hear()
-            events = [*self._joined(), *self._found()]
+            failed = failures([port.custody for port in self._ports.values()], self.time_s, self.time_s)
+            events = [*self._joined(), *self._found(), *failed]
             stands = self._simulator is not None and time.monotonic() >= real_until  # the simulator's clock
             if events or any(passed) or self.time_s >= until_s or stands:
                 return events
@@ -240,6 +248,7 @@ class Ros2Fleet:
             frames=self._frames,
             pose_topic=self._pose_topic(name),
             stamp=time.time if self._simulator is None else self._simulator.stamp,
+            limits=self._custody_limits,
         )
 
     def _goals(self, topics: str) -> Goals:

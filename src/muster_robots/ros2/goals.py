@@ -16,6 +16,8 @@ class Goals(Protocol):
     """Who is to receive them, in words."""
     feedback: str
     """Where `poses` come from, in words."""
+    reports: bool
+    """Whether the robot's navigation says when a goal has ended."""
 
     @property
     def unfit(self) -> str:
@@ -58,14 +60,12 @@ class Goals(Protocol):
 class PoseGoals:
     """Goals on a topic. They have no result: poses show when they are reached."""
 
-    at_rest = True
+    at_rest, reports = True, False
     unfit = feedback = ""
 
     def __init__(self, writer: Writer[PoseStamped], topic: str) -> None:
         self.expected = f"a subscriber of {topic} (geometry_msgs/PoseStamped)"
         self._writer = writer
-        self._goal: PoseStamped | None = None
-        self._listeners = 0
 
     @property
     def ready(self) -> bool:
@@ -73,22 +73,15 @@ class PoseGoals:
         return self._writer.listeners > 0
 
     def give(self, goal: PoseStamped) -> None:
-        self._goal = goal
         self._writer.write(goal)
 
     def withdraw(self, here: PoseStamped | None) -> bool:
         """Its goal becomes where it is. One whose pose is not known keeps the goal that it has."""
-        self._goal = None
         if here is not None:
             self._writer.write(here)
         return here is not None
 
     def hear(self, now: float, *, under_way: bool) -> Ended | None:
-        """A new subscriber gets the goal, too."""
-        listeners = self._writer.listeners
-        if listeners > self._listeners and under_way and self._goal is not None:
-            self._writer.write(self._goal)
-        self._listeners = listeners
         return None
 
     def poses(self) -> list[PoseStamped]:

@@ -23,9 +23,11 @@ from muster.mission.model import Robot
 from muster.mission.values.ranges import require_positive
 from muster.motion.frames import Floats, angles, flu_to_enu, pose_of, pose_transform, quaternion_rotation
 from muster.motion.port import Place, Telemetry, Waypoint
+from muster_robots.custody import CustodyLimits, Holder, Wants
 from muster_robots.follower import Follower
 from muster_robots.localisation import Localisation
-from muster_robots.pose_port import Attention, goal_heading, require_finite, velocity_by
+from muster_robots.pose_custody import PoseCustody
+from muster_robots.pose_port import goal_heading, require_finite, velocity_by
 from muster_robots.ros2.goals import Goals
 from muster_robots.ros2.map_frame import MAP_FRAME, RobotFrames
 from muster_robots.ros2.message_types import (
@@ -83,6 +85,8 @@ class Ros2Port:
         where its pose is published, if not on `<robot>/pose`: by a motion capture system.
     stamp
         seconds of ROS' time, for the stamps of goals.
+    limits
+        those of its custody.
     """
 
     def __init__(
@@ -98,6 +102,7 @@ class Ros2Port:
         frames: TiedFrames | None = None,
         pose_topic: str | None = None,
         stamp: Callable[[], float] = time.time,
+        limits: CustodyLimits | None = None,
     ) -> None:
         self.body, self.topics, self.goals, self._flat, self._clock = robot, topics, goals, flat, clock
         self._stamp = stamp
@@ -113,7 +118,7 @@ class Ros2Port:
         shared = TiedFrames(MAP_FRAME) if frames is None else frames
         self._frames = RobotFrames(middleware, topics, shared)
         self._localisation = Localisation(self._frames)
-        self._attention = Attention(robot.id, goals.expected, lambda: goals.ready)
+        self.custody = PoseCustody(robot.id, limits or CustodyLimits(), goals.expected, lambda: goals.ready)
         self._withheld = False  # whether a goal waits for that
         self._height = 0.0
         self._refused = ""
@@ -128,7 +133,7 @@ class Ros2Port:
         """What is missing of what it takes to drive it, and what is expected; empty if nothing is."""
         if self._said is None:
             return self._localisation.untied or f"nothing on {' or '.join(self._where.values())}"
-        return self.goals.unfit or self._attention.missing
+        return self.goals.unfit or self.custody.missing
 
     @property
     def at_rest(self) -> bool:
@@ -145,10 +150,11 @@ class Ros2Port:
         """
         require_finite(self.robot, waypoints)
         order = self._follower.take(waypoints)
-        self._refused, self.is_to_stay = "", not waypoints
+        may_be_told = self.custody.want(self._clock(), goes=bool(waypoints))
+        self._refused, self.is_to_stay = "", may_be_told and not waypoints
         if waypoints:
             self._speak()
-        else:
+        elif may_be_told:
             self._take_in(self._clock())
             self._let_stay()
         return order
@@ -159,7 +165,7 @@ class Ros2Port:
 
     def telemetry(self) -> Telemetry | None:
         """See `RobotPort`."""
-        return self._attention.judged(self._said)
+        return self.custody.judged(self._said)
 
     def hear(self) -> bool:
         """Take in what has come, and give the next goal where one is reached; returns whether one was passed."""
@@ -167,19 +173,36 @@ class Ros2Port:
         under_way = self._follower.aim is not None and not self._follower.stays
         ended = self.goals.hear(now, under_way=under_way)
         if ended is not None and under_way:
-            self._refused = ended.reason
-            if not ended.reason:
+            if ended.by_others:
+                self._leave(ended.reason)
+            elif ended.reason:
+                self._refused = ended.reason
+            else:
                 self._follower.arrive(now)
         heard = self._take_in(now)
         passed = self._follower.wait(now) or heard
         if self._said is not None and (passed or ended is not None):
             order, count = self._follower.order, self._follower.passed
             self._said = replace(self._said, order=order, passed=count, refused=self._refused)
-        if passed or (self._withheld and self._said is not None):
+        again = self._look(now)
+        if passed or again is Wants.ORDER or (self._withheld and self._said is not None):
             self._speak()
-        if self.is_to_stay:
+        if self.goals.reports and self.goals.at_rest and self.custody.moves_by_others:
+            self._leave("it moves by no goal of Muster's")
+        elif self.is_to_stay or again is Wants.HOLD:
             self._let_stay()
         return passed
+
+    def _look(self, now: float) -> Wants | None:
+        """What it is to be told again, by its poses, and by what its navigation says."""
+        follower = self._follower
+        is_done = follower.aim is None or follower.stays or bool(self._refused)
+        return self.custody.look(now, is_carried_out=is_done or not self.goals.at_rest)
+
+    def _leave(self, why: str) -> None:
+        """Leave it to somebody else, who has it."""
+        self.custody.take(self._clock(), Holder.STATION, why)
+        self.is_to_stay = False
 
     def _let_stay(self) -> None:
         """Make its position its goal; a silent robot keeps its goal until a pose arrives."""
@@ -187,6 +210,8 @@ class Ros2Port:
         lost = said is None or self._clock() - said.time_s > _FRESH_S
         here = None if said is None or lost else self._stamped(said.position, said.heading)
         self.is_to_stay = not self.goals.withdraw(here)
+        if not self.is_to_stay:
+            self.custody.told(self._clock())
 
     def _take_in(self, now: float) -> bool:
         """Where it has said that it is; returns whether it has passed a way point with that."""
@@ -229,6 +254,7 @@ class Ros2Port:
         self._height = place[2]
         place = (*place[:2], 0.0) if self._flat else place
         passed = follower.hear(now, place, heading)
+        self.custody.hear(now, place, heading)
         speed = velocity_by(self._said, place, now) if velocity is None else velocity
         counted = follower.odometry_m, follower.order, follower.passed
         self._said = Telemetry(now, place, heading, speed, *counted, refused=self._refused)
@@ -241,7 +267,7 @@ class Ros2Port:
         """
         aim = self._follower.aim
         self._withheld = self._said is None and bool(self._localisation.untied)
-        if aim is None or self._withheld:
+        if aim is None or self._withheld or self.custody.is_taken:
             return
         self.goals.give(self._stamped(aim.position, goal_heading(aim, self._said)))
 

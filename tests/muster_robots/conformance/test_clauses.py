@@ -8,6 +8,8 @@ from tests.muster_robots.conformance.adapters import BROKEN, KEPT, Yard, right, 
 from muster.mission.errors import ParameterError
 from muster_robots.conformance.clauses import CLAUSES
 from muster_robots.conformance.kit import findings
+from muster_robots.custody_settings import CustodySettings
+from muster_robots.goal_fleet import GoalFleet
 
 
 @pytest.fixture(autouse=True)
@@ -21,6 +23,18 @@ def test_a_right_adapter_conforms():
     found = list(findings(right()))
     assert {one.clause: (one.result, one.seen) for one in found if one.result != "holds"} == {}
     assert [one.clause for one in found] == list(CLAUSES)
+
+
+def test_it_conforms_where_custody_counts_its_robots_as_silent():
+    """Each clause lets a robot be silent for four seconds; a robot that is back must show first that it holds."""
+
+    def strict(*given, **how):
+        return GoalFleet(*given, custody=CustodySettings(link_lost_s=1.0), **how)
+
+    others = [name for name, clause in CLAUSES.items() if not clause.silences]
+    found = {one.clause: one.result for one in findings(stand_of(Yard(), fleet=strict), without=others)}
+    silent = {name for name, clause in CLAUSES.items() if clause.silences}
+    assert {name for name, result in found.items() if result == "holds"} == silent
 
 
 def test_every_clause_has_a_broken_adapter():

@@ -23,9 +23,7 @@ def ended(kind, faults, at_end):
     sky = Sky(there, kind, {"r_0": faults})
     fleet = sky.fleet(there)
     report = carry_out_live(there, muster.solve(there, iterations=50), fleet)
-    if at_end != "hold":
-        fleet.end(at_end)
-    fleet.await_landing(lambda: False)
+    fleet.finish(at_end, lambda: False)
     states = {state.robot: state for state in fleet.final_states()}
     fleet.close()
     sky.close()

@@ -97,6 +97,25 @@ def test_it_goes_on_in_the_air_and_does_nothing_twice(number, call, drone, capsy
 
 
 @pytest.mark.long
+def test_drones_that_were_to_return_do_so_though_that_is_not_asked_for_again(call, drone, capsys):
+    """Muster is killed while it waits for them to land."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "muster.cli", *call, "--arm", "--at-end=return"], stderr=subprocess.PIPE, text=True
+    )
+    end = time.monotonic() + 60.0
+    while drone.mode != PX4.back and time.monotonic() < end:
+        time.sleep(0.02)
+    process.kill()
+    process.communicate(timeout=60)
+    assert (drone.armed, drone.mode) == (True, PX4.back)
+    assert run([*call, "--arm", "--resume"]) == DONE
+    err = capsys.readouterr().err
+    assert "2 tasks done; r_0 was to return" in err
+    assert err.splitlines()[-1].startswith("r_0: returned, landed, not armed")
+    assert not drone.armed
+
+
+@pytest.mark.long
 def test_it_is_brought_home_with_and_without_a_journal(call, drone, capsys, tmp_path, monkeypatch):
     killed(call, drone, signal.SIGKILL)
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "elsewhere"))

@@ -64,7 +64,9 @@ def test_a_robot_without_a_pose_is_one_line(ros, mission):
     carried = ros.muster(mission, "--wait", "0.5")
     out, err = carried.communicate(timeout=20)
     assert (carried.returncode, out) == (2, "")
-    said = "robot r_0: nothing on /r_0/odom or /r_0/pose within 0.5 s (and 1 more); expected its pose\n"
+    said = (
+        "robot r_0: nothing on /r_0/odom or /r_0/pose or /r_0/amcl_pose within 0.5 s (and 1 more); expected its pose\n"
+    )
     assert own_words(err) == said
 
 

@@ -177,8 +177,8 @@ def _world_run(
     made = RecoveryRun if request.recover else RealRun
     try:
         before_order = None if local is None else local.before_order
-        how: dict[str, Any] = {"request": request, "state": state, "at_end": at_end, "before_order": before_order}
-        return made(mission, plan, fleet, recorder, **how)
+        how: dict[str, Any] = {"request": request, "state": state, "before_order": before_order}
+        return made(mission, plan, fleet, recorder, at_end=at_end, halt=ended, **how)
     except BaseException:
         fleet.close()
         raise

@@ -1,6 +1,7 @@
 """The local journal of a runner of real robots: what the server has not taken is told again, and obeyed once."""
 
 import json
+import threading
 
 import pytest
 from tests.running.test_live import WorldAsFleet, mission
@@ -137,7 +138,7 @@ def run_until(run, enough):
         run.go_on()
 
 
-def begun(begin, fleet, *, made=RealRun):
+def begun(begin, fleet, *, made=RealRun, **more):
     """A run of the runner, with its journal."""
     sent = Sent()
     journal = local(begin, sent)
@@ -145,7 +146,8 @@ def begun(begin, fleet, *, made=RealRun):
     state = recovered_from(THERE, PLAN, journal.begin["log"])
     recorder = LogRecorder(THERE, journal, state, seq=journal.begin["seq"])
     request = RunRequest(world=OPEN_FLEET)
-    how = {"request": request, "state": state if journal.begin["seq"] else None, "before_order": journal.before_order}
+    known = state if journal.begin["seq"] else None
+    how = {"request": request, "state": known, "before_order": journal.before_order, **more}
     run = made(THERE, PLAN, fleet, recorder, **how)
     return run, journal, sent
 
@@ -184,3 +186,38 @@ def test_robots_are_brought_home_by_a_run_of_its_own(begin, cancelled):
     assert report["data"]["tasks_done"] == []
     there = [fleet.ports[robot.id].telemetry().position[0] < 0.5 for robot in THERE.robots]
     assert there == [not cancelled, not cancelled]
+
+
+@pytest.mark.parametrize("cancelled", [False, True])
+def test_a_run_goes_on_until_robots_have_done_what_they_do_at_the_end_and_that_can_be_cancelled(begin, cancelled):
+    """Drones fly home for minutes: the run hears its users meanwhile."""
+    halt, down = threading.Event(), threading.Event()
+
+    def land():
+        while not (down.is_set() or halt.is_set()):
+            down.wait(0.01)
+
+    run, journal, sent = begun(begin(), WorldAsFleet(THERE), at_end=land, halt=halt)
+    run_until(run, lambda: run.executor.done)
+    run.go_on()
+    assert not run.done
+    with pytest.raises(muster.MusterError, match="do what they do at the end; expected cancel"):
+        run.pause()
+    if cancelled:
+        run.break_off("not done when the run was cancelled")
+    down.set()
+    run_until(run, lambda: False)
+    run.close()
+    journal.close()
+    assert run.done
+    report, states = sent.entries[-1], sent.entries[-2]
+    assert (states["kind"], report["kind"]) == ("final_states", "report")
+    assert sorted(report["data"]["tasks_done"]) == ["t_0", "t_1", "t_2", "t_3"]
+
+
+def test_an_error_of_the_end_ends_the_run(begin):
+    run, journal, _ = begun(begin(), WorldAsFleet(THERE), at_end=lambda: {}["no such drone"])
+    with pytest.raises(KeyError, match="no such drone"):
+        run_until(run, lambda: False)
+    run.close()
+    journal.close()
