@@ -76,7 +76,7 @@ class Negotiator(Participant):
     @property
     def route(self) -> tuple[Claim, ...]:
         """The tasks that this robot owns, in the order of execution; empty before it has heard the other robots."""
-        return self._owned.left_of(self.epoch.route()) if self.epochs and not self.superseded else ()
+        return self._owned.left_of(self.epoch.route()) if self.latest and not self.superseded else ()
 
     @property
     def memory(self) -> Memory:
@@ -116,12 +116,12 @@ class Negotiator(Participant):
 
     def owners(self, tasks: Collection[str]) -> Members:
         """The members that own one of these tasks, each with its task; none unless an auction with it has ended."""
-        return self.epoch.owners(tasks) if self.stage.ended and self.epochs and not self.superseded else ()
+        return self.epoch.owners(tasks) if self.stage.ended and self.latest and not self.superseded else ()
 
     @property
     def spans(self) -> Mapping[str, tuple[float, float]]:
         """When tasks begin and end by what was agreed, in mission time; none unless an auction with times has ended."""
-        return self.valuer.spans() if self.stage.ended and self.epochs and not self.superseded else {}
+        return self.valuer.spans() if self.stage.ended and self.latest and not self.superseded else {}
 
     def finish(self, task: str) -> None:
         """State that the robot has done a task; of one that several begin all have stated their parts before."""

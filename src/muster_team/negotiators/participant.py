@@ -12,13 +12,13 @@ robot that has the lacking data sends it.
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import defaultdict, deque
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import repeat
 from typing import Any
 
-from muster_team.auctions.epoch import Epoch
+from muster_team.auctions.epoch import Epoch, EpochAuction
 from muster_team.auctions.valuation import Valuer
 from muster_team.knowledge.admission import admit, healed
 from muster_team.knowledge.effects import Counts, Memory, Notice, Notices, Outgoing
@@ -47,6 +47,9 @@ from muster_team.negotiators.repairs import Repairs
 
 LEAP = 2**20
 """The most epochs that a robot goes on at once. So no number that arrives uses up all that there are."""
+
+PAST = 32
+"""The number of earlier epochs whose auctions are kept for the book of bids. Of older ones nothing is."""
 
 RESTATED = 3
 """How often other routes of a robot lead to a new epoch. So a liar does not keep the team busy."""
@@ -94,7 +97,9 @@ class Participant:
         memory, refused = healed(self.remembered or Memory(knows=not self.forgot), self.rules, self.signatures)
         for reason in refused:
             self._refuse(self.robot, reason)
-        self.epochs: list[Epoch] = []  # those of which the base was found
+        self.latest: Epoch | None = None  # the last epoch whose base was found
+        self.past: deque[EpochAuction] = deque(maxlen=PAST)  # what is kept of those before
+        self.together = True  # whether the whole team took part in each
         self.knows = memory.knows
         self._before = memory
         self._identity = Identity(self.robot, self.incarnation)
@@ -211,7 +216,7 @@ class Participant:
     @property
     def _base(self) -> Base | None:
         """The base of the last epoch whose base was found."""
-        return self.epochs[-1].base if self.epochs else None
+        return self.latest.base if self.latest else None
 
     @property
     def _rules(self) -> Rules:
@@ -317,7 +322,8 @@ class Participant:
     def _renumber(self) -> None:
         """Continue under a higher incarnation, as after a restart with memory; the next epoch is entered with it."""
         self.incarnation = self._owned.incarnation = self._identity.incarnation
-        self.epochs.clear()
+        self.latest = None
+        self.past.clear()
         self.notices.tell("renumbered", [self.robot])
 
     def _note_restart(self, robot: str) -> None:
@@ -357,7 +363,9 @@ class Participant:
 
     def _note_base(self, base: Base) -> None:
         """Process the base of the epoch, which follows from the declarations of all members."""
-        self.epochs.append(self.epoch)
+        self.past += [] if self.latest is None else [self.latest.auction]
+        self.latest = self.epoch
+        self.together &= len(base.routes) == len(self.rules.robots)
         self._identity.may_renumber &= len(base.routes) == 1  # else the others have accepted the incarnation
         self._peer_progress.find_base()
         self._learn(base.facts)
