@@ -1,6 +1,6 @@
 """Run the campaign: `python -m tests.muster_team.mutated [SEEDS] [--first SEED] [--processes N]`, or one seed.
 
-A seed is a run of a team of five that hears 10,000 mutated messages; 100 seeds are a million.
+A seed is a run of a team of five that hears 20,000 mutated messages; 50 seeds are a million.
 """
 
 import sys
@@ -13,5 +13,5 @@ LIMIT_S = 100.0
 
 if __name__ == "__main__":
     parser = parser_of("tests.muster_team.mutated", __doc__)
-    parser.set_defaults(seeds=100)
+    parser.set_defaults(seeds=50)
     sys.exit(run(parser, mutated_trial, cpu_limit_s=LIMIT_S))

@@ -26,7 +26,7 @@ from muster_team.negotiators.participation import bundler_of, negotiator_of
 from muster_team.network.memory_network import LinkConditions, MemoryNetwork
 from muster_team.processes.memory_file import Kept, kept_in
 
-PHASES, WORDS = 20, 500
+PHASES, WORDS = 20, 1000
 """Moments of a run, and messages at each."""
 
 _LIES_FROM = 12  # before that moment the robots themselves hear no lies, so that the liar is still one of them
@@ -145,7 +145,7 @@ class Trial:
             shut_out = LIAR in robot.convicted
             self.report.counts["copies that shut the liar out"] += copy is not None and shut_out
             is_elsewhere = robot.epoch.own.epoch != epoch  # where most of what the team says is of the past
-            if copy is not None and self.random.random() < (1.0 if shut_out else 0.3 if is_elsewhere else 0.03):
+            if copy is not None and self.random.random() < (1.0 if shut_out else 0.08 if is_elsewhere else 0.01):
                 robot.node.negotiator = copy()
         self._reloaded(robot)
         refused = robot.node.status().refused - before
