@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from muster_team.knowledge.messages import Birth, Declaration, Evidence, Fact, Message, RoundBids
+from muster_team.knowledge.messages import AUTHORITY, Birth, Declaration, Evidence, Fact, Message, RoundBids
 
 Signed = Declaration | Fact | RoundBids | Birth
 S = TypeVar("S", Declaration, Fact, RoundBids, Birth)
@@ -28,8 +28,8 @@ class Signatures:
         return statement
 
     def holds(self, statement: Signed, context: bytes = b"") -> bool:
-        """Whether the robot that a statement names has made it."""
-        return True
+        """Whether the robot, or the authority, that a statement names has made it; without keys there is none."""
+        return statement.robot != AUTHORITY
 
     def proof_of(self, data: bytes) -> bytes:
         """The robot's own proof of bytes."""

@@ -116,8 +116,10 @@ class Participant:
     def start(self, now: float) -> list[Outgoing]:
         """Start, with the whole team as expected members; return the messages to send."""
         self.members.expect(self.rules.robots, now, self.absent)
+        self._apply_revocations(self._owned.known.facts)
         claims = self._owned.left_of(self._before.claims)
-        return self._open(self._declaration(self._before.epoch + 1, claims, 0, now), now)
+        out = self._open(self._declaration(self._before.epoch + 1, claims, 0, now), now)
+        return [] if self._identity.superseded else out
 
     @property
     def stage(self) -> Stage:
@@ -191,12 +193,21 @@ class Participant:
         """Count a robot out for good that has stated two different things, and tell the others."""
         if not self._convictions.convict(evidence):
             return
-        self.notices.tell("revoked", [evidence.robot])
-        if evidence.robot == self.robot:
-            self._identity.superseded = True  # a copy of this process states things too
+        self._shut_out(evidence.robot, "it has stated two different things")
+
+    def _shut_out(self, robot: str, reason: str) -> None:
+        """Count a robot out for good; this one falls silent, as another process has its key."""
+        self.notices.append(Notice("revoked", (robot,), reason=reason))
+        if robot == self.robot:
+            self._identity.superseded = True
         else:
-            self.members.revoke(evidence.robot)
+            self.members.revoke(robot)
             self._owned.epoch_due = True
+
+    def _apply_revocations(self, facts: Iterable[Fact]) -> None:
+        for fact in facts:
+            if fact.kind == "revoked":
+                self._shut_out(fact.task, "an operator has revoked its key")
 
     def _compare_routes(self, message: Message) -> None:
         """Tell of a sender that computes other routes; all state their own in another epoch, RESTATED times at most."""
@@ -288,11 +299,14 @@ class Participant:
         return True
 
     def _correct(self, message: Message, now: float) -> list[Outgoing]:
-        """Tell a sender with an outdated incarnation which incarnation is known.
+        """Tell a sender whose key was revoked so, and one with an outdated incarnation which incarnation is known.
 
         It may have started without memory after its clock was set back. It then takes a higher incarnation. While the
         known incarnation is heard, another process has the id, and nobody is told.
         """
+        order = [f for f in self._owned.known.facts if f.kind == "revoked" and f.task == message.sender]
+        if order and message.heartbeats and self._repairs.may_answer(message, now):
+            return [Outgoing(self._message(None, facts=tuple(order)), message.sender)]
         is_past = self.members.incarnation(message.sender) > message.incarnation
         if not is_past or not message.heartbeats or not self._repairs.may_answer(message, now):
             return []
@@ -331,7 +345,9 @@ class Participant:
         self.notices.tell("restarted", [robot])
 
     def _learn(self, facts: Collection[Fact]) -> None:
-        if any(fact.kind in ("done", "part") for fact in self._owned.known.learn(facts)):
+        new = self._owned.known.learn(facts)
+        self._apply_revocations(new)
+        if any(fact.kind in ("done", "part") for fact in new):
             self.notices.tell_twice(self.twice)
 
     def _absorb(self, message: Message) -> bool:

@@ -17,6 +17,7 @@ from muster.allocation.auctions.consensus_bundle import Parameters as BundlePara
 from muster.mission.errors import MissionError, ParameterError
 from muster.model.problem import Problem
 from muster_team.knowledge.effects import Outgoing
+from muster_team.knowledge.messages import AUTHORITY
 from muster_team.negotiators.participation import bundler_of, negotiator_of
 from muster_team.network.memory_network import LinkConditions, MemoryNetwork
 from muster_team.network.robot_keys import RobotKeys, public_key
@@ -33,7 +34,7 @@ def secret(robot):
 
 def keys_of(robots):
     """Keys of robots, the same each time."""
-    roster = {robot: public_key(secret(robot)) for robot in robots}
+    roster = {robot: public_key(secret(robot)) for robot in (*robots, AUTHORITY)}
     return {robot: RobotKeys(secret(robot), roster, b"a mission") for robot in robots}
 
 
