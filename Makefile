@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: house standing demo test test-all test-alone quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-byzantine campaign-model campaign-goods campaign-server campaign-faults fault-flights campaign-api campaign-coverage campaign-kills network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
+.PHONY: house standing demo test test-all test-alone quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-byzantine campaign-mutated campaign-model campaign-goods campaign-server campaign-faults fault-flights campaign-api campaign-coverage campaign-kills network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -77,6 +77,9 @@ campaign-auction: $(VENV)/developed
 campaign-byzantine: $(VENV)/developed
 	$(BIN)/python -m tests.muster_team.byzantine $(CAMPAIGN_FLAGS)
 
+campaign-mutated: $(VENV)/developed
+	$(BIN)/python -m tests.muster_team.mutated $(CAMPAIGN_FLAGS)
+
 campaign-model: $(VENV)/developed
 	$(BIN)/python -m tests.muster_team.model $(CAMPAIGN_FLAGS)
 
@@ -138,6 +141,7 @@ help:
 	@echo "                       (CAMPAIGN_FLAGS='--timed 2000': of missions with rules of time)"
 	@echo "make campaign-byzantine  10,000 teams of which one robot states what is not so; with CAMPAIGN_FLAGS='--orders'"
 	@echo "                       operators give orders that contradict each other"
+	@echo "make campaign-mutated  a million mutated messages, validly sealed, to robots in every phase"
 	@echo "make campaign-model  every run of three robots that negotiate, within bounds (CAMPAIGN_FLAGS='1 --first 8')"
 	@echo "make campaign-goods  carry out 2,000 missions with goods and batteries in which robots and stations fail"
 	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"

@@ -39,6 +39,7 @@ CAMPAIGNS = [
     Campaign(4, "campaign-auction", 200, 2_000, "--timed {seeds} --first {first}"),
     Campaign(2, "campaign-byzantine", 500, 10_000),
     Campaign(8, "campaign-byzantine", 200, 1_000, "--orders {seeds} --first {first}"),
+    Campaign(9, "campaign-mutated", 5, 50),
     Campaign(0, "campaign-model", 1, 9),
     Campaign(5, "disturbances", 1_000, 10_000),
     Campaign(6, "disturbances-timed", 200, 2_000),

@@ -32,6 +32,34 @@ AHEAD = 1
 Statement = Declaration | RoundBids
 
 
+@dataclass(frozen=True)
+class EpochAuction:
+    """The auction of an epoch, as far as the robot has seen it.
+
+    Parameters
+    ----------
+    members
+        the robots that could bid, in tie order.
+    rounds
+        the number of rounds seen in all before it.
+    opening
+        the state of the mission when it began.
+    sales
+        in order.
+    published
+        the members' bids by round; empty where sales contain everything.
+    whole
+        whether these are all rounds.
+    """
+
+    members: tuple[str, ...]
+    rounds: int
+    opening: Opening
+    sales: tuple[Sold, ...]
+    published: tuple[tuple[RoundBids, ...], ...] = ()
+    whole: bool = True
+
+
 @dataclass
 class Epoch:
     """An epoch as one member sees it.
@@ -213,6 +241,15 @@ class Epoch:
     def rounds(self) -> int:
         """The number of rounds seen in all, counted by sales: awards are numbered so."""
         return (self.own.rounds if self.base is None else self.base.rounds) + len(self.sales)
+
+    @property
+    def auction(self) -> EpochAuction:
+        """What is kept of the epoch when another one follows; its base has been found."""
+        assert self.base is not None
+        published = () if self.valuer.sales_suffice else self.published()
+        whole = self.valuer.sales_suffice or len(published) == self.round
+        opening = opening_of(self.base)
+        return EpochAuction(self.own.members, self.base.rounds, opening, tuple(self.sales), published, whole)
 
     def route(self) -> tuple[Claim, ...]:
         """What this member owns now, in the order of its route."""

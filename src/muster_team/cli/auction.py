@@ -36,7 +36,8 @@ if TYPE_CHECKING:
     from muster_team.negotiators.methods import Method
 
 _FILE = click.Path(path_type=Path)
-_OF_ONE_ROBOT = ("listen", "connect", "multicast", "memory", "key_file", "robot_key", "roster")
+_OF_ONE_ROBOT = ("listen", "connect", "multicast", "memory", "key_file", "robot_key", "roster", "revocations")
+_OF_AN_OPERATOR = {"robot_key", "roster"}  # with --revoke
 _OF_A_SIMULATED_NETWORK = ("loss", "duplication", "delay", "jitter", "crashes", "cut")
 
 
@@ -114,6 +115,11 @@ def command(
     problem = Problem.compile(loaded, objective, ignore)
     refuse_what_is_not_agreed(problem, chosen.can)
     problem = problem.ready()
+    if others["revoke"] is not None:
+        from muster_team.cli.auction_robot import revocation_line
+
+        click.echo(revocation_line(problem, terms, others))
+        return DONE
     agreement = _agree(problem, terms, chosen, negotiation.transport, others, quiet=quiet, verbose=verbose)
     first = next(iter(agreement.views.values()))
     plan = chosen.plan(problem, terms, first, agreement.took_s)
@@ -147,11 +153,14 @@ def _check_together(others: dict[str, Any]) -> None:
     given = {name for name, value in others.items() if value is not None}
     for names, needed in ((_OF_ONE_ROBOT, "robot"), (_OF_A_SIMULATED_NETWORK, "network_seed")):
         for name in names:
-            if name in given and needed not in given:
+            is_operators = "revoke" in given and name in _OF_AN_OPERATOR
+            if name in given and needed not in given and not is_operators:
                 word = {"robot": "--robot", "network_seed": "--simulate-network"}[needed]
                 raise ParameterError(f"--{name.replace('_', '-')} given; expected it together with {word}")
-    if {"robot", "network_seed"} <= given:
-        raise ParameterError("--robot and --simulate-network given; expected one of them")
+    both = [name for name in ("robot", "revoke", "network_seed") if name in given]
+    if len(both) > 1:
+        words = {"robot": "--robot", "revoke": "--revoke", "network_seed": "--simulate-network"}
+        raise ParameterError(f"{' and '.join(words[name] for name in both)} given; expected one of them")
 
 
 def _write_views(folder: Path, plans: dict[str, Plan]) -> None:

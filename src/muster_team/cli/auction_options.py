@@ -55,6 +55,14 @@ robot_options = _group(
     ),
     click.option("--roster", type=_FILE, metavar="FILE", help="The public keys of all robots (.json)."),
     click.option(
+        "--revocations", type=_FILE, metavar="FILE", help="Orders of --revoke, a line each, also those added later."
+    ),
+    click.option(
+        "--revoke",
+        metavar="NAME",
+        help="Print the order that revokes this robot's key, signed by --robot-key, and do nothing else.",
+    ),
+    click.option(
         "--listen", metavar="ADDRESS", help="HOST:PORT to be reached at (Zenoh: an endpoint).  [default: 0.0.0.0:7783]"
     ),
     click.option(

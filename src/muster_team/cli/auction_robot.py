@@ -1,4 +1,4 @@
-"""`muster auction --robot NAME`: one robot of a team whose other robots run elsewhere."""
+"""`muster auction --robot NAME`: one robot of a team whose other robots run elsewhere. And orders that revoke keys."""
 
 from __future__ import annotations
 
@@ -13,17 +13,19 @@ from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.texts.near_matches import did_you_mean
 from muster.model.problem import Problem
 from muster_team.cli.auction_result import Agreement, by_kind
+from muster_team.knowledge.messages import AUTHORITY
 from muster_team.knowledge.signatures import NO_KEYS, Signatures
 from muster_team.negotiators.methods import Method
 from muster_team.negotiators.negotiator import Negotiator
 from muster_team.network.keys import read_key
 from muster_team.network.mission_digest import mission_digest
-from muster_team.network.robot_keys import RobotKeys, public_key, read_roster
+from muster_team.network.robot_keys import RobotKeys, order_line, public_key, read_roster, revocation
 from muster_team.network.transport import Transport
 from muster_team.processes.memory_file import kept_of
 from muster_team.processes.node import NodeStatus
 from muster_team.processes.node_factory import node_of
 from muster_team.processes.one_robot import StayLimits, new_incarnation, take_part
+from muster_team.processes.revocation_file import RevocationFile
 
 _ANYWHERE = "0.0.0.0"  # noqa: S104 - the others are on other machines
 _PORT = 7783
@@ -73,11 +75,34 @@ def agree_with_others(
     if forgot and node.negotiator.once:
         say(f"{len(node.negotiator.once)} tasks are for at most one robot: without --memory they may find none")
     limits = StayLimits(wait_s=options["wait"], linger_s=options["linger"], limit_s=options["time_limit"])
+    orders = None if options["revocations"] is None else RevocationFile(options["revocations"], node.negotiator)
     with node:
-        watch = _Watch(node.negotiator, say)
+        watch = _Watch(node.negotiator, say, orders)
         view, took_s = take_part(node, limits, watch)
         watch.say_how_it_ended(node.status(), took_s)
     return Agreement({robot: view}, took_s)
+
+
+def revocation_line(problem: Problem, terms: Any, options: dict[str, Any]) -> str:
+    """The order that revokes the key of a robot in the auction with these terms, as a line of text.
+
+    Raises
+    ------
+    ParameterError
+        if there is no such robot, or the key is not that of the operator in the roster.
+    InputError
+        if the key or the roster cannot be read.
+    """
+    robot, own, roster = options["revoke"], options["robot_key"], options["roster"]
+    names = list(problem.robot_index)
+    if robot not in names:
+        raise ParameterError(f"--revoke: {robot}; expected one of {', '.join(names)}{did_you_mean(robot, names)}")
+    if own is None or roster is None:
+        raise ParameterError("--robot-key and --roster: expected both with --revoke")
+    key, public = read_key(own), read_roster(roster, names)
+    if public.get(AUTHORITY) != public_key(key):
+        raise ParameterError(f"--robot-key: {own}; expected the key whose public one {roster} gives {AUTHORITY}")
+    return order_line(revocation(robot, key, mission_digest(problem, terms)))
 
 
 def _signatures(options: dict[str, Any], problem: Problem, context: bytes) -> Signatures:
@@ -96,13 +121,15 @@ def _signatures(options: dict[str, Any], problem: Problem, context: bytes) -> Si
 class _Watch:
     """Prints which robots take part."""
 
-    def __init__(self, negotiator: Negotiator, say: Callable[[str], None]) -> None:
-        self._negotiator, self._say = negotiator, say
+    def __init__(self, negotiator: Negotiator, say: Callable[[str], None], orders: RevocationFile | None) -> None:
+        self._negotiator, self._say, self._orders = negotiator, say, orders
         self._there: set[str] = set()
         self._settled, self._told = False, 0
         self._incarnation = negotiator.incarnation
 
     def __call__(self, status: NodeStatus) -> None:
+        for wrong in [] if self._orders is None else self._orders.look():
+            self._say(wrong)
         members = self._negotiator.members
         if self._negotiator.incarnation != self._incarnation:
             self._incarnation = self._negotiator.incarnation
@@ -118,7 +145,7 @@ class _Watch:
             if notice.kind == "refused":
                 self._say(f"refused from {notice.robots[0]}: {notice.reason}")
             elif notice.kind == "revoked":
-                self._say(f"{notice.robots[0]} has stated two different things; going on without it for good")
+                self._say(f"going on without {notice.robots[0]} for good, as {notice.reason}")
         self._told = len(self._negotiator.notices)
         if status.settled != self._settled and status.settled:
             who = (

@@ -17,6 +17,7 @@ from muster.mission.value_types import shown
 from muster_team.knowledge.effects import Memory
 from muster_team.knowledge.joint_statements import presence_fault
 from muster_team.knowledge.messages import (
+    AUTHORITY,
     FACTS,
     ORDERS,
     PRESENCE,
@@ -148,7 +149,11 @@ def _heartbeat(rules: Rules, heartbeat: Heartbeat) -> Iterator[str]:
 
 
 def _fact(rules: Rules, fact: Fact) -> Iterator[str]:
-    yield from _robots(rules, [fact.robot])
+    if fact.kind == "revoked":
+        yield from _robots(rules, [fact.task])
+        yield from () if fact.robot == AUTHORITY else [f"a revocation by {shown(fact.robot)}"]
+    else:
+        yield from _robots(rules, [fact.robot])
     yield from _names([fact.task])
     yield from _counts("order", [fact.order])
     if fact.kind not in FACTS or type(fact.content) is not bytes:

@@ -27,14 +27,14 @@ class Notice:
         "silent": robots no longer take part. "back": robots take part again. "restarted": a robot has restarted.
         "unresponsive": a robot is heard but delays the others, and is excluded. "rival": another process uses this
         robot's id. "renumbered": this robot has taken a higher incarnation, as the others knew a later one than its
-        clock gave it. "refused": a robot has sent what is not admitted. "revoked": a robot has stated two different
-        things, and is excluded for good. "dropped": the robot has lost a task that it owned, as another robot owns it
+        clock gave it. "refused": a robot has sent what is not admitted. "revoked": a robot is excluded
+        for good; the reason says why. "dropped": the robot has lost a task that it owned, as another robot owns it
         or it cannot be done any more. "twice": these robots have all begun or done the task. "differs": a
         robot computes other routes from what was sold, so that all state their own again.
     robots, task
         the robots and the task concerned; "" without a task.
     reason
-        why something was refused; "" otherwise.
+        why something was refused, or a robot excluded for good; "" otherwise.
     """
 
     kind: str

@@ -22,8 +22,11 @@ class Claim:
     begun: bool = False
 
 
-FACTS = ("done", "begun", "waived", "added", "moved", "cancelled", "ready", "left", "joined", "part")
+FACTS = ("done", "begun", "waived", "added", "moved", "cancelled", "ready", "left", "joined", "part", "revoked")
 """The kinds of facts."""
+
+AUTHORITY = "@operator"
+"""Who revokes keys of robots, in place of a robot: its public key stands under this name in the roster."""
 
 ORDERS = ("added", "moved")
 """The kinds of facts that contain a task."""
@@ -39,12 +42,13 @@ class Fact:
     Parameters
     ----------
     task, robot
-        the task, and the robot that states the fact.
+        the task, and the robot that states the fact. Of "revoked": the robot whose key is revoked, and AUTHORITY.
     kind
         "done": the robot has done the task. "begun": the robot has begun an at-most-once task or is going to. "waived":
         it has not and never will, in the incarnation that announced it. "added": the task belongs to the mission from
         now on. "moved": it has another position. "cancelled": it need not be done. "ready", "left", "joined" and
-        "part": of a task that several robots begin at the same moment, see `joint_statements`.
+        "part": of a task that several robots begin at the same moment, see `joint_statements`. "revoked": the
+        robot does not take part any more, and nothing that it states from then on counts.
     order
         above that of all facts that the robot knew, so that a fact comes after those that it follows from.
     content
@@ -68,7 +72,7 @@ class Fact:
     @property
     def opens_epoch(self) -> bool:
         """Whether all have to learn of it in a new epoch, as it changes what is for sale or who may begin."""
-        return self.kind in ("begun", "waived", "added", "moved", "cancelled")
+        return self.kind in ("begun", "waived", "added", "moved", "cancelled", "revoked")
 
 
 @dataclass(frozen=True, slots=True)

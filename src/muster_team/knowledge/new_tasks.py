@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache
+from functools import lru_cache
 
 from muster.mission.errors import MissionError
 from muster.mission.model import Task
@@ -21,7 +21,7 @@ def content_of(task: Task) -> bytes:
     return json.dumps(plain(task), sort_keys=True, separators=(",", ":")).encode()
 
 
-@cache
+@lru_cache(maxsize=4096)
 def task_of(content: bytes) -> Task:
     """The task encoded in these bytes.
 

@@ -5,10 +5,9 @@ Statements are passed on by others. The team's key shows that a member has sent 
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TypeVar
 
-from muster_team.knowledge.messages import Birth, Declaration, Evidence, Fact, Message, RoundBids
+from muster_team.knowledge.messages import AUTHORITY, Birth, Declaration, Evidence, Fact, Message, RoundBids
 
 Signed = Declaration | Fact | RoundBids | Birth
 S = TypeVar("S", Declaration, Fact, RoundBids, Birth)
@@ -29,8 +28,8 @@ class Signatures:
         return statement
 
     def holds(self, statement: Signed, context: bytes = b"") -> bool:
-        """Whether the robot that a statement names has made it."""
-        return True
+        """Whether the robot, or the authority, that a statement names has made it; without keys there is none."""
+        return statement.robot != AUTHORITY
 
     def proof_of(self, data: bytes) -> bytes:
         """The robot's own proof of bytes."""
@@ -45,8 +44,9 @@ NO_KEYS = Signatures()
 
 
 def statement_bytes(statement: Signed, context: bytes) -> bytes:
-    """What is signed: the statement without its proof, and what it belongs to."""
-    return repr((type(statement).__name__, context, replace(statement, proof=b""))).encode()
+    """What is signed: the statement without its proof, which is its last field, and what it belongs to."""
+    stated = repr(statement).removesuffix(f"{statement.proof!r})")
+    return f"({type(statement).__name__!r}, {context!r}, {stated}b''))".encode()
 
 
 def forged_in(message: Message, signatures: Signatures) -> str:

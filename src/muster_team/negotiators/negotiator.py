@@ -11,9 +11,10 @@ from collections.abc import Collection, Mapping
 from muster.mission.errors import ParameterError
 from muster.mission.model import Task
 from muster.mission.value_types import shown
+from muster_team.knowledge.admission import admit
 from muster_team.knowledge.effects import Memory
 from muster_team.knowledge.joint_statements import Members
-from muster_team.knowledge.messages import Claim, Fact
+from muster_team.knowledge.messages import AUTHORITY, Claim, Fact
 from muster_team.knowledge.new_tasks import content_of
 from muster_team.knowledge.orders import Orders, orders_among
 from muster_team.knowledge.verdicts import Refused
@@ -40,6 +41,11 @@ class Negotiator(Participant):
         return frozenset(self._convictions.evidence)
 
     @property
+    def revoked(self) -> frozenset[str]:
+        """Robots whose keys an operator has revoked."""
+        return frozenset(fact.task for fact in self._owned.known.facts if fact.kind == "revoked")
+
+    @property
     def facts(self) -> frozenset[Fact]:
         """All facts that the robot knows."""
         return frozenset(self._owned.known.facts)
@@ -52,10 +58,13 @@ class Negotiator(Participant):
     def is_final(self, order: Fact) -> bool:
         """Whether what became of an order holds for the whole team: each of its robots has declared that it knows it.
 
-        An order that a robot gives from then on comes after it. Before that one may turn up that comes before it.
+        Robots whose keys were revoked do not count. An order that a robot gives from then on comes after it. Before
+        that one may turn up that comes before it.
         """
         base = self._base
-        return base is not None and order in base.facts and set(base.routes) == set(self.rules.robots)
+        return (
+            base is not None and order in base.facts and self.rules.robots.keys() - self.revoked <= base.routes.keys()
+        )
 
     @property
     def known(self) -> int:
@@ -76,7 +85,7 @@ class Negotiator(Participant):
     @property
     def route(self) -> tuple[Claim, ...]:
         """The tasks that this robot owns, in the order of execution; empty before it has heard the other robots."""
-        return self._owned.left_of(self.epoch.route()) if self.epochs and not self.superseded else ()
+        return self._owned.left_of(self.epoch.route()) if self.latest and not self.superseded else ()
 
     @property
     def memory(self) -> Memory:
@@ -116,12 +125,12 @@ class Negotiator(Participant):
 
     def owners(self, tasks: Collection[str]) -> Members:
         """The members that own one of these tasks, each with its task; none unless an auction with it has ended."""
-        return self.epoch.owners(tasks) if self.stage.ended and self.epochs and not self.superseded else ()
+        return self.epoch.owners(tasks) if self.stage.ended and self.latest and not self.superseded else ()
 
     @property
     def spans(self) -> Mapping[str, tuple[float, float]]:
         """When tasks begin and end by what was agreed, in mission time; none unless an auction with times has ended."""
-        return self.valuer.spans() if self.stage.ended and self.epochs and not self.superseded else {}
+        return self.valuer.spans() if self.stage.ended and self.latest and not self.superseded else {}
 
     def finish(self, task: str) -> None:
         """State that the robot has done a task; of one that several begin all have stated their parts before."""
@@ -170,6 +179,26 @@ class Negotiator(Participant):
     def cancel(self, task: str) -> None:
         """Take a task out of the mission. A robot that has begun it continues."""
         self._owned.say(task, "cancelled")
+
+    def revoke(self, order: Fact) -> None:
+        """Revoke the key of a robot for the whole team: it is counted out, and what it owned is auctioned again.
+
+        Parameters
+        ----------
+        order
+            as `robot_keys.revocation` makes it.
+
+        Raises
+        ------
+        ParameterError
+            if it is no revocation, not of a robot of the mission, or not signed by the authority in the roster.
+        """
+        verdict = admit(self.rules, order, self.signatures)
+        if order.kind != "revoked" or isinstance(verdict, Refused):
+            reason = verdict.reason if isinstance(verdict, Refused) else f"a fact of the kind {shown(order.kind)}"
+            raise ParameterError(f"revocation: {reason}; expected one signed by the key of {AUTHORITY} in the roster")
+        self._owned.unsent += [] if order in self._owned.known.facts else [order]
+        self._learn([order])
 
     def abandon(self, task: str) -> None:
         """Stop a cancelled task that was begun, so that no robot waits for what depends on it."""

@@ -12,13 +12,13 @@ robot that has the lacking data sends it.
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import defaultdict, deque
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import repeat
 from typing import Any
 
-from muster_team.auctions.epoch import Epoch
+from muster_team.auctions.epoch import Epoch, EpochAuction
 from muster_team.auctions.valuation import Valuer
 from muster_team.knowledge.admission import admit, healed
 from muster_team.knowledge.effects import Counts, Memory, Notice, Notices, Outgoing
@@ -47,6 +47,9 @@ from muster_team.negotiators.repairs import Repairs
 
 LEAP = 2**20
 """The most epochs that a robot goes on at once. So no number that arrives uses up all that there are."""
+
+PAST = 32
+"""The number of earlier epochs whose auctions are kept for the book of bids. Of older ones nothing is."""
 
 RESTATED = 3
 """How often other routes of a robot lead to a new epoch. So a liar does not keep the team busy."""
@@ -94,7 +97,9 @@ class Participant:
         memory, refused = healed(self.remembered or Memory(knows=not self.forgot), self.rules, self.signatures)
         for reason in refused:
             self._refuse(self.robot, reason)
-        self.epochs: list[Epoch] = []  # those of which the base was found
+        self.latest: Epoch | None = None  # the last epoch whose base was found
+        self.past: deque[EpochAuction] = deque(maxlen=PAST)  # what is kept of those before
+        self.together = True  # whether the whole team took part in each
         self.knows = memory.knows
         self._before = memory
         self._identity = Identity(self.robot, self.incarnation)
@@ -111,8 +116,10 @@ class Participant:
     def start(self, now: float) -> list[Outgoing]:
         """Start, with the whole team as expected members; return the messages to send."""
         self.members.expect(self.rules.robots, now, self.absent)
+        self._apply_revocations(self._owned.known.facts)
         claims = self._owned.left_of(self._before.claims)
-        return self._open(self._declaration(self._before.epoch + 1, claims, 0, now), now)
+        out = self._open(self._declaration(self._before.epoch + 1, claims, 0, now), now)
+        return [] if self._identity.superseded else out
 
     @property
     def stage(self) -> Stage:
@@ -186,12 +193,21 @@ class Participant:
         """Count a robot out for good that has stated two different things, and tell the others."""
         if not self._convictions.convict(evidence):
             return
-        self.notices.tell("revoked", [evidence.robot])
-        if evidence.robot == self.robot:
-            self._identity.superseded = True  # a copy of this process states things too
+        self._shut_out(evidence.robot, "it has stated two different things")
+
+    def _shut_out(self, robot: str, reason: str) -> None:
+        """Count a robot out for good; this one falls silent, as another process has its key."""
+        self.notices.append(Notice("revoked", (robot,), reason=reason))
+        if robot == self.robot:
+            self._identity.superseded = True
         else:
-            self.members.revoke(evidence.robot)
+            self.members.revoke(robot)
             self._owned.epoch_due = True
+
+    def _apply_revocations(self, facts: Iterable[Fact]) -> None:
+        for fact in facts:
+            if fact.kind == "revoked":
+                self._shut_out(fact.task, "an operator has revoked its key")
 
     def _compare_routes(self, message: Message) -> None:
         """Tell of a sender that computes other routes; all state their own in another epoch, RESTATED times at most."""
@@ -211,7 +227,7 @@ class Participant:
     @property
     def _base(self) -> Base | None:
         """The base of the last epoch whose base was found."""
-        return self.epochs[-1].base if self.epochs else None
+        return self.latest.base if self.latest else None
 
     @property
     def _rules(self) -> Rules:
@@ -283,11 +299,14 @@ class Participant:
         return True
 
     def _correct(self, message: Message, now: float) -> list[Outgoing]:
-        """Tell a sender with an outdated incarnation which incarnation is known.
+        """Tell a sender whose key was revoked so, and one with an outdated incarnation which incarnation is known.
 
         It may have started without memory after its clock was set back. It then takes a higher incarnation. While the
         known incarnation is heard, another process has the id, and nobody is told.
         """
+        order = [f for f in self._owned.known.facts if f.kind == "revoked" and f.task == message.sender]
+        if order and message.heartbeats and self._repairs.may_answer(message, now):
+            return [Outgoing(self._message(None, facts=tuple(order)), message.sender)]
         is_past = self.members.incarnation(message.sender) > message.incarnation
         if not is_past or not message.heartbeats or not self._repairs.may_answer(message, now):
             return []
@@ -317,7 +336,8 @@ class Participant:
     def _renumber(self) -> None:
         """Continue under a higher incarnation, as after a restart with memory; the next epoch is entered with it."""
         self.incarnation = self._owned.incarnation = self._identity.incarnation
-        self.epochs.clear()
+        self.latest = None
+        self.past.clear()
         self.notices.tell("renumbered", [self.robot])
 
     def _note_restart(self, robot: str) -> None:
@@ -325,7 +345,9 @@ class Participant:
         self.notices.tell("restarted", [robot])
 
     def _learn(self, facts: Collection[Fact]) -> None:
-        if any(fact.kind in ("done", "part") for fact in self._owned.known.learn(facts)):
+        new = self._owned.known.learn(facts)
+        self._apply_revocations(new)
+        if any(fact.kind in ("done", "part") for fact in new):
             self.notices.tell_twice(self.twice)
 
     def _absorb(self, message: Message) -> bool:
@@ -357,7 +379,9 @@ class Participant:
 
     def _note_base(self, base: Base) -> None:
         """Process the base of the epoch, which follows from the declarations of all members."""
-        self.epochs.append(self.epoch)
+        self.past += [] if self.latest is None else [self.latest.auction]
+        self.latest = self.epoch
+        self.together &= len(base.routes) == len(self.rules.robots)
         self._identity.may_renumber &= len(base.routes) == 1  # else the others have accepted the incarnation
         self._peer_progress.find_base()
         self._learn(base.facts)

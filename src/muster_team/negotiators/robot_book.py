@@ -16,11 +16,12 @@ from muster.allocation.auctions.consensus_bundle import Parameters
 from muster.mission.auction_book import Award, Book, TakeBid
 from muster.model.problem import Problem
 from muster_team.auctions.bundles import BundleValuer
+from muster_team.auctions.epoch import EpochAuction
 from muster_team.auctions.task_sales import TaskSales
 from muster_team.auctions.unit_sales import UnitSales
 from muster_team.auctions.valuation import AuctionValuer
 from muster_team.knowledge.messages import Claim, Sold
-from muster_team.negotiators.robot_view import EpochAuction, View
+from muster_team.negotiators.robot_view import View
 
 OnSale = Callable[[TaskSales | UnitSales, int, Sold, Sequence[int]], None]
 """Called before what was sold is assigned, with the sales so far, the round's number, and the robots that could bid."""
@@ -29,9 +30,9 @@ OnSale = Callable[[TaskSales | UnitSales, int, Sold, Sequence[int]], None]
 def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
     """The book: awards of all tasks that robots own in the view, and the bids of all rounds that the robot has seen.
 
-    Of a task that was won where the robot could not see it, the book knows only the price. `messages` is None where the
-    whole team took part throughout, so that every robot has bid for all that it could do; else it is the number that
-    the robot sent.
+    Of a task that was won where the robot could not see it, or before the epochs of the view, the book knows only the
+    price. `messages` is None where the whole team took part throughout, so that every robot has bid for all that it
+    could do; else it is the number that the robot sent.
     """
     auctions = view.auctions
 
@@ -42,11 +43,10 @@ def book_of_view(problem: Problem, terms: Terms, view: View) -> Book:
 
         _hold_again(problem, terms, auctions, tell)
 
-    whole = all(len(held.members) == len(problem.robots) for held in auctions)
     awards = tuple(_awards(problem, terms, auctions, view.claims))
     return Book(
         rounds=view.rounds,
-        messages=None if whole else view.sent,
+        messages=None if view.together else view.sent,
         awards=awards,
         done_twice=view.twice,
         for_each_bid=for_each_bid,

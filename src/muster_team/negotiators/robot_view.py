@@ -5,42 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from muster_team.auctions.epoch import Epoch, opening_of
-from muster_team.auctions.valuation import Opening
+from muster_team.auctions.epoch import Epoch, EpochAuction
 from muster_team.knowledge.epoch_base import Base
-from muster_team.knowledge.messages import Claim, RoundBids, Sold, Stage
+from muster_team.knowledge.messages import Claim, Stage
 from muster_team.negotiators.negotiator import Negotiator
 
 Routes = Mapping[str, tuple[str, ...]]
 """The tasks of each robot, in the order of execution."""
-
-
-@dataclass(frozen=True)
-class EpochAuction:
-    """The auction of an epoch, as far as the robot has seen it.
-
-    Parameters
-    ----------
-    members
-        the robots that could bid, in tie order.
-    rounds
-        the number of rounds seen in all before it.
-    opening
-        the state of the mission when it began.
-    sales
-        in order.
-    published
-        the members' bids by round; empty where sales contain everything.
-    whole
-        whether these are all rounds.
-    """
-
-    members: tuple[str, ...]
-    rounds: int
-    opening: Opening
-    sales: tuple[Sold, ...]
-    published: tuple[tuple[RoundBids, ...], ...] = ()
-    whole: bool = True
 
 
 @dataclass(frozen=True)
@@ -62,7 +33,9 @@ class View:
     added
         tasks that were added to the mission, as `new_tasks.content_of` writes them, in tie order.
     auctions
-        one per epoch, the last one last.
+        of the last epochs, at most `participant.PAST` + 1, the last one last.
+    together
+        whether the whole team took part in all auctions, those of earlier epochs among them.
     sent
         the number of messages that the robot has sent.
     """
@@ -74,6 +47,7 @@ class View:
     twice: Routes
     added: tuple[bytes, ...]
     auctions: tuple[EpochAuction, ...]
+    together: bool
     sent: int
 
     @property
@@ -84,29 +58,20 @@ class View:
 
 def view_of(negotiator: Negotiator) -> View:
     """What a robot knows now; between two epochs, what it knew in the last one."""
-    epochs, counts = negotiator.epochs, negotiator.counts
-    auctions = tuple(held for epoch in epochs if (held := _held(epoch)) is not None)
-    last = epochs[-1].base if epochs else None
+    latest, counts = negotiator.latest, negotiator.counts
+    auctions = () if latest is None else (*negotiator.past, latest.auction)
+    last = None if latest is None else latest.base
     routes = {} if last is None else {robot: tuple(negotiator.valuer.route(robot)) for robot in negotiator.rules.robots}
     return View(
         robot=negotiator.robot,
         stage=negotiator.stage,
         routes={robot: tasks for robot, tasks in routes.items() if tasks},
-        claims={} if last is None else _claims(last, epochs[-1]),
+        claims={} if latest is None or last is None else _claims(last, latest),
         twice={} if last is None else dict(negotiator.twice),
         added=() if last is None else tuple(fact.content for fact in last.added),
         auctions=auctions,
+        together=negotiator.together,
         sent=counts.news + counts.repairs + counts.heartbeats,
-    )
-
-
-def _held(epoch: Epoch) -> EpochAuction | None:
-    if epoch.base is None:
-        return None
-    published = () if epoch.valuer.sales_suffice else epoch.published()
-    whole = epoch.valuer.sales_suffice or len(published) == epoch.round
-    return EpochAuction(
-        epoch.own.members, epoch.base.rounds, opening_of(epoch.base), tuple(epoch.sales), published, whole
     )
 
 

@@ -45,7 +45,7 @@ from muster_team.network.plain_values import (
     rows,
 )
 
-PROTOCOL = 6
+PROTOCOL = 7
 """The version of the protocol, 0 to 255: of this table, and of the rules by which robots bid and agree."""
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from muster.mission.errors import Finding, InputError
+from muster_team.knowledge.messages import AUTHORITY, Fact
 from muster_team.knowledge.signatures import S, Signatures, Signed, statement_bytes
 from muster_team.network.keys import KEY_BYTES
 from muster_team.network.optional_parts import require_net
@@ -88,8 +89,38 @@ def public_key(key: bytes) -> bytes:
     return Ed25519PrivateKey.from_private_bytes(key).public_key().public_bytes_raw()
 
 
+def revocation(robot: str, key: bytes, context: bytes) -> Fact:
+    """The order that revokes a robot's key in a mission, signed by the key of the authority.
+
+    Parameters
+    ----------
+    robot
+        the robot that no longer takes part.
+    key
+        of the authority: 32 bytes, whose public key stands under AUTHORITY in the roster.
+    context
+        as of `RobotKeys`. The order holds in no other mission.
+    """
+    return RobotKeys(key, {}, context).sign(Fact(robot, AUTHORITY, "revoked"))
+
+
+def order_line(order: Fact) -> str:
+    """A revocation as a line of text."""
+    return json.dumps({"revoked": order.task, "proof": order.proof.hex()})
+
+
+def order_of(line: str) -> Fact | None:
+    """The revocation in a line of text; None if there is none in it. Whether it counts is for `Negotiator.revoke`."""
+    try:
+        data = json.loads(line)
+        order = Fact(data["revoked"], AUTHORITY, "revoked", proof=bytes.fromhex(data["proof"]))
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return None
+    return order if type(order.task) is str else None
+
+
 def read_roster(path: Path, robots: Collection[str]) -> dict[str, bytes]:
-    """The public keys of a team: a JSON object from robots to 64 hexadecimal digits.
+    """The public keys of a team: a JSON object from robots, and AUTHORITY, to 64 hexadecimal digits.
 
     Raises
     ------
@@ -103,7 +134,9 @@ def read_roster(path: Path, robots: Collection[str]) -> dict[str, bytes]:
         raise _error(path, "", str(error.strerror)) from None
     except (UnicodeError, ValueError, AttributeError, TypeError):
         raise _error(path, "", "other content") from None
-    for robot in robots:
+    if AUTHORITY in robots:
+        raise _error(path, AUTHORITY, "a robot of this name")
+    for robot in [*robots, *(name for name in roster if name == AUTHORITY)]:
         if len(roster.get(robot, b"")) != KEY_BYTES:
             raise _error(path, robot, "no key" if robot not in roster else "a key of another length")
     return roster

@@ -52,8 +52,8 @@ def take_part(
     Raises
     ------
     NetworkError
-        if another process uses its id, no other robot is present, all others have another mission or version, or there
-        is no agreement in time.
+        if another process uses its id, the team has counted it out for good, no other robot is present, all others have
+        another mission or version, or there is no agreement in time.
     """
     clock, negotiator = clock or SystemClock(), node.negotiator
     began_s = clock.now()
@@ -86,6 +86,11 @@ def _check_name(status: NodeStatus, negotiator: Negotiator) -> None:
     if any(rival > negotiator.incarnation for rival in status.rivals):
         raise NetworkError(
             f"{status.robot}: another process has started under this name; expected one for each robot, this one ends"
+        )
+    reasons = [n.reason for n in negotiator.notices if n.kind == "revoked" and n.robots == (status.robot,)]
+    if reasons:
+        raise NetworkError(
+            f"{status.robot}: the team goes on without it, as {reasons[0]}; expected a new key of it in every roster"
         )
 
 

@@ -17,6 +17,7 @@ from muster.allocation.auctions.consensus_bundle import Parameters as BundlePara
 from muster.mission.errors import MissionError, ParameterError
 from muster.model.problem import Problem
 from muster_team.knowledge.effects import Outgoing
+from muster_team.knowledge.messages import AUTHORITY
 from muster_team.negotiators.participation import bundler_of, negotiator_of
 from muster_team.network.memory_network import LinkConditions, MemoryNetwork
 from muster_team.network.robot_keys import RobotKeys, public_key
@@ -33,7 +34,7 @@ def secret(robot):
 
 def keys_of(robots):
     """Keys of robots, the same each time."""
-    roster = {robot: public_key(secret(robot)) for robot in robots}
+    roster = {robot: public_key(secret(robot)) for robot in (*robots, AUTHORITY)}
     return {robot: RobotKeys(secret(robot), roster, b"a mission") for robot in robots}
 
 
@@ -96,18 +97,24 @@ def byzantine_trial(seed):
         [robot.id for robot in problem.robots],
         seed,
         LinkConditions(delay_s=0.02, loss=random.choice((0.0, 0.1))),
-        watch=partial(_work, lambda: net, begun, random),
+        watch=partial(work, lambda: net, begun, random),
     )
     net.lie_with(codec_of(problem), keys[LIAR], random)
     with report.trying():
         net.start()
         net.run(1.5)
-        _order(net, random)
+        give_orders(net, random)
         net.run(LIES_UNTIL_S)
         net.lies = False
-        net.crash(LIAR)
-        report.check(net.run(net.now + QUIET_S, lambda: _agree(net)), "the others do not agree")
+        look_at_the_others(net, begun, report)
     report.counts["mutated"] += net.mutations
+    return report
+
+
+def look_at_the_others(net, begun, report):
+    """The liar falls silent: what became of the others, once they agree; `begun`: how often tasks were for good."""
+    net.crash(LIAR)
+    report.check(net.run(net.now + QUIET_S, lambda: _agree(net)), "the others do not agree")
     for robot, node in net.nodes.items():
         report.check(not node.superseded, f"{robot} was silenced")
         report.counts["refused"] += node.counts.refused.total()
@@ -116,10 +123,9 @@ def byzantine_trial(seed):
     teams = next(iter(net.nodes.values())).rules.teams
     report.failures += [f"{task} has {k} owners" for task, k in owned.items() if k > 1 and task not in teams]
     report.failures += [f"{task} was begun {k} times" for task, k in begun.items() if k > 1]
-    return report
 
 
-def _work(net, begun, random, robot):
+def work(net, begun, random, robot):
     """Honest robots begin their at-most-once tasks now and then."""
     node = net().nodes.get(robot)
     if node is None or robot == LIAR or random.random() > 0.02:
@@ -130,7 +136,7 @@ def _work(net, begun, random, robot):
             return
 
 
-def _order(net, random):
+def give_orders(net, random):
     for robot, name, before in (("r_0", "x1", ()), ("r_1", "x2", ("x1",)), (LIAR, "x3", ())):
         if robot in net.nodes and random.random() < 0.7:
             place = tuple(random.uniform(0, 10) for _ in range(2))

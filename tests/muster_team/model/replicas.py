@@ -122,7 +122,7 @@ class Replicas:
         return self._numbers[key]
 
     def _look(self, node):
-        orders, base, claims = node.orders, node.epochs[-1].base if node.epochs else None, node.route
+        orders, base, claims = node.orders, node.latest.base if node.latest else None, node.route
         verdicts = tuple(orders.verdicts.items())
         return Look(
             epoch=node.epoch.own.epoch,

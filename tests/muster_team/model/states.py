@@ -21,6 +21,8 @@ NO_STATE = frozenset(
         "_deeds_at",  # caches of what follows from the facts
         "_deeds_found",
         "_looked_at",
+        "past",  # is told in views
+        "together",
     }
 )
 """Attributes that do not decide what a negotiator does next."""
@@ -51,9 +53,9 @@ def canonical(value):
 
 def state_of(node):
     """The canonical form of a negotiator. Of the epochs that it has left the last one with a base counts."""
-    last = node.epochs[-1] if node.epochs else None
+    last = node.latest
     past = None if last is None or last is node.epoch else (last.base.digest, tuple(last.sales))
-    attributes = ((k, canonical(v)) for k, v in vars(node).items() if k not in NO_STATE and k != "epochs")
+    attributes = ((k, canonical(v)) for k, v in vars(node).items() if k not in NO_STATE and k != "latest")
     return (*attributes, past, last is node.epoch)
 
 
@@ -79,7 +81,7 @@ class Store:
 
     def stored(self, node):
         """The negotiator as bytes; its valuer is kept for whoever needs one that has seen the same."""
-        del node.epochs[:-1]
+        node.past.clear()
         node.notices.clear()
         node.remembered = None
         file = io.BytesIO()
@@ -93,8 +95,9 @@ class Store:
         node = _Unpickler(io.BytesIO(stored), self._shared, self._words).load()
         valuer = self._valuers.pop(_seen(node), None) or self._valuer_of(node)
         node.valuer = valuer
-        for epoch in (*node.epochs, node.epoch):
-            epoch.valuer = valuer
+        node.epoch.valuer = valuer
+        if node.latest is not None:
+            node.latest.valuer = valuer
         return node
 
     def _number(self, word):
@@ -105,16 +108,16 @@ class Store:
 
     def _valuer_of(self, node):
         valuer = self._make(incarnation=1).valuer
-        if node.epochs:
-            valuer.begin(opening_of(node.epochs[-1].base))
-            for sold in node.epochs[-1].sales:
+        if node.latest is not None:
+            valuer.begin(opening_of(node.latest.base))
+            for sold in node.latest.sales:
                 valuer.award(sold)
         return valuer
 
 
 def _seen(node):
     """What the valuer of a negotiator has seen: the last base, and what was sold on it."""
-    last = node.epochs[-1] if node.epochs else None
+    last = node.latest
     return None if last is None else (last.base.digest, tuple(last.base.routes.items()), tuple(last.sales))
 
 
