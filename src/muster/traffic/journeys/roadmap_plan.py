@@ -12,7 +12,7 @@ from muster import core
 from muster.motion.grid import Floats
 from muster.traffic.journeys.joint_journeys import JointJourneys
 from muster.traffic.journeys.roadmap_network import Network, Standing, with_places
-from muster.traffic.journeys.travellers import Move, Point, Traveller
+from muster.traffic.journeys.travellers import PlannedMoves, Point, Traveller
 from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
 from muster.traffic.roadmaps.roadmap import Bools, Roadmap
 from muster.traffic.roadmaps.robot_spaces import Disc, RobotSpaces
@@ -43,10 +43,6 @@ class RoadmapPlan:
         of the mission, which close and open.
     for_more
         makes the roadmap for robots of further radii, which may join; without it there are none.
-    cut_off
-        see `Planner`.
-    stepwise
-        see `Planner`.
     """
 
     roadmap: Roadmap
@@ -54,8 +50,6 @@ class RoadmapPlan:
     seed: int = 0
     doors: RoadmapDoors = NO_DOORS
     for_more: Callable[[Sequence[float]], Roadmap] | None = None
-    cut_off: frozenset[int] = frozenset()
-    stepwise: bool = False
     _closed: frozenset[str] = field(init=False)
     _priorities: list[str] = field(default_factory=list)
     _known: Network | None = None
@@ -72,22 +66,8 @@ class RoadmapPlan:
         """See `Planner`."""
         return bool(self.doors.open_ways(piece[np.newaxis], self._closed, radius_m)[0])
 
-    def __call__(self, travellers: Sequence[Traveller]) -> list[Move]:
-        """Moves in an order in which they are free, as far as paths are found."""
-        moves, through = self._planned(travellers)
-        self.stepwise = not through
-        return moves
-
-    def whole(self, travellers: Sequence[Traveller]) -> list[Move] | None:
+    def __call__(self, travellers: Sequence[Traveller]) -> PlannedMoves:
         """See `Planner`."""
-        moves, through = self._planned(travellers)
-        if not through:
-            return None
-        self.stepwise = False
-        return moves
-
-    def _planned(self, travellers: Sequence[Traveller]) -> tuple[list[Move], bool]:
-        """Moves through all stops, or to the first ones where that is not found; and whether all get there."""
         on = self._network_for(travellers)
         ways = _WAYS if self._priorities else _FIRST_WAYS
         shared = self._shared(on, travellers, ways)
@@ -96,8 +76,11 @@ class RoadmapPlan:
             shared = self._shared(on, [_to_first_stop(who) for who in travellers], ways)
             moves, ends = shared.paths()
         self._priorities = [travellers[k].robot.id for k in shared.order]
-        self.cut_off = frozenset(k for k, end in enumerate(ends) if math.isnan(end))
-        return [on.move(traveller, edge, stop) for _, traveller, edge, stop in moves], math.inf not in ends
+        return PlannedMoves(
+            moves=[on.move(traveller, edge, stop) for _, traveller, edge, stop in moves],
+            complete=math.inf not in ends,
+            cut_off=frozenset(k for k, end in enumerate(ends) if math.isnan(end)),
+        )
 
     def journeys(self, travellers: Sequence[Traveller], *, ways: int, places: Sequence[Point] = ()) -> JointJourneys:
         """How each gets through all its stops among the others; so many ways are sought to improve the first ones.

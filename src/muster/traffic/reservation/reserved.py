@@ -8,7 +8,7 @@ it, and when one stands that should go.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 
@@ -19,7 +19,7 @@ from muster.mission.model import Robot
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.outlook import Outlook
 from muster.motion.port import Place, RobotPort, Waypoint, planar
-from muster.traffic.journeys.travellers import Move, Planner, Point, Stop, Traveller
+from muster.traffic.journeys.travellers import PlannedMoves, Planner, Point, Stop, Traveller
 from muster.traffic.names import drives
 from muster.traffic.reservation.managed_port import ManagedPort
 from muster.traffic.reservation.part import Part
@@ -29,9 +29,9 @@ AHEAD_M = 2.0
 """For how many metres a robot may have begun moves, which a new plan does not change."""
 PLAN_EVERY_S = 1.0
 """The least time between two plans where nobody has a new goal."""
-STEPS_FOR_S = 10.0
-"""So long at most robots go on by moves that were planned step by step, as long as there are any and no plan of whole
-ways is found: other steps may send them back."""
+INCOMPLETE_FOR_S = 10.0
+"""The greatest time for which an incomplete plan holds, as long as robots have moves of it left and no complete plan is
+found."""
 STOPS_PLANNED = 120
 """Stops of all robots to which moves are planned, but `LEAST_STOPS` of each; anew where one has fewer than half of
 these left."""
@@ -89,6 +89,7 @@ class ReservedTraffic:
     _planned_s: float = _NEVER_S  # what was planned does not hold any more
     _sought_s: float = -math.inf  # when a plan was last sought
     _travellers: list[Traveller] = field(default_factory=list)  # of the last plan
+    _last: PlannedMoves = PlannedMoves()
     _closed: frozenset[str] = frozenset()  # doors
     _outlook: Callable[[str], Outlook] = field(default=lambda robot: Outlook(stays=True))
 
@@ -146,9 +147,9 @@ class ReservedTraffic:
             self._lead_on(part, now)
         self._watch(now)
         if self._plan_is_due(now):
-            self._plan_anew(now, self.plan)
-        elif now - self._sought_s >= PLAN_EVERY_S and self._on_steps(now):
-            self._plan_anew(now, self.plan.whole)
+            self._plan_anew(now)
+        elif now - self._sought_s >= PLAN_EVERY_S and self._keeps_to_incomplete(now):
+            self._plan_anew(now, only_complete=True)
         for part in self._parts:
             self._let_go(part, now)
             self._refuse_what_no_way_leads_to(part, now)
@@ -213,7 +214,7 @@ class ReservedTraffic:
     def _lead_on(self, part: Part, now: float) -> None:
         """A robot that goes where it was planned to go next, or has done all, goes on along the moves that it has."""
         goal, arrives = self._goal(part), part.port.arrives
-        to_next = arrives and goal != part.goal and part.ahead[:1] == [goal] and not self.plan.stepwise
+        to_next = arrives and goal != part.goal and part.ahead[:1] == [goal] and self._last.complete
         to_rest = goal is None and part.goal is not None and not part.ahead and not part.stays
         if to_next or to_rest:
             part.goal, part.arrives, part.ahead = goal, arrives, part.ahead[1:]
@@ -225,15 +226,15 @@ class ReservedTraffic:
     def _plan_is_due(self, now: float) -> bool:
         if self._planned_s == _NEVER_S or any(self._goes_elsewhere(part, now) for part in self._parts):
             return True
-        if now - self._planned_s < PLAN_EVERY_S or self._on_steps(now):
+        if now - self._planned_s < PLAN_EVERY_S or self._keeps_to_incomplete(now):
             return False
         return any(
             self._falls_short(part) or (part.more and len(part.ahead) < LEAST_STOPS // 2) for part in self._parts
         )
 
-    def _on_steps(self, now: float) -> bool:
-        """Whether robots go on by moves that were planned step by step."""
-        if not self.plan.stepwise or now - self._planned_s >= STEPS_FOR_S:
+    def _keeps_to_incomplete(self, now: float) -> bool:
+        """Return whether the last plan is incomplete and robots still go on by its moves."""
+        if self._last.complete or now - self._planned_s >= INCOMPLETE_FOR_S:
             return False
         return any(self._order.metres_left(part.number) > _MOVED_M for part in self._parts if not part.fixed)
 
@@ -259,8 +260,8 @@ class ReservedTraffic:
             return None
         return planar(goal)
 
-    def _plan_anew(self, now: float, plan: Callable[[Sequence[Traveller]], Iterable[Move] | None]) -> None:
-        """Moves after those that have begun; where none are found all goes on as it was planned before."""
+    def _plan_anew(self, now: float, *, only_complete: bool = False) -> None:
+        """Plan moves after those that have begun; with `only_complete` an incomplete plan changes nothing."""
         self._sought_s = now
         before = copy(self._order), [copy(part) for part in self._parts]
         self._order.drop_ahead()
@@ -270,13 +271,13 @@ class ReservedTraffic:
             self._find_again(part)
             travellers.append(self._traveller(part))
         travellers += [Traveller(part.robot, at, fixed=True) for part in self._parts for at in part.may_be_at]
-        moves = plan(travellers)
-        if moves is None:
+        found = self.plan(travellers)
+        if only_complete and not found.complete:
             self._order, self._parts = before
             return
-        self._planned_s, self.plans, self._travellers = now, self.plans + 1, travellers
+        self._planned_s, self.plans, self._travellers, self._last = now, self.plans + 1, travellers, found
         stopped = set[int]()
-        for traveller, to, stop, speed_mps in moves:
+        for traveller, to, stop, speed_mps in found.moves:
             part = self._parts[traveller]
             if traveller not in stopped and not self._order.append(part.number, to, part.stop + stop, speed_mps):
                 stopped.add(traveller)
@@ -384,6 +385,6 @@ class ReservedTraffic:
 
     def _nearest(self, part: Part) -> str:
         """The robot next to one that has found no way; one that others have to get round, where such cut it off."""
-        others, cut_off = [other for other in self._parts if other is not part], part.number in self.plan.cut_off
+        others, cut_off = [other for other in self._parts if other is not part], part.number in self._last.cut_off
         found = min(others, key=lambda one: (one.fixed != cut_off, math.dist(one.near, part.near)), default=None)
         return "" if found is None else found.robot.id
