@@ -5,12 +5,17 @@ from __future__ import annotations
 from muster.mission.model import Mission
 from muster.motion.map_world import World
 from muster.traffic.blockages.closed_rings import can_close_out
+from muster.traffic.journeys.roadmap_plan import Budget
 from muster.traffic.manager import TrafficManager
 from muster.traffic.mission_roadmap import MissionRoadmap
 from muster.traffic.names import AUTO, RESERVE, drives, may_reserve
+from muster.traffic.reservation.planning import DelayedPlanning, ThreadedPlanning
 from muster.traffic.reservation.reserved import AHEAD_M, AHEAD_S, ReservedTraffic
 from muster.traffic.roadmaps.given_lanes import limited_lanes
 from muster.traffic.roadmaps.roadmap import MARGIN_M
+
+SIMULATED_BUDGET, REAL_BUDGET = Budget(expansions=1_000_000), Budget(seconds=0.5)
+"""How long a plan is improved while robots go on by the plan before, in simulated missions and by real robots."""
 
 
 def manager_named(
@@ -25,7 +30,9 @@ def manager_named(
     """The manager of a mission's traffic; None where robots pass each other as they meet.
 
     Parameters and errors are those of `shared_roadmap`. With `auto` traffic is by reservation also where robots at rest
-    can close others out of their ends. `real` robots get as few orders as possible (`ReservedTraffic.sparing`).
+    can close others out of their ends. `real` robots get as few orders as possible (`ReservedTraffic.sparing`), and
+    their traffic is planned in a thread, for a time; that of simulated ones takes a fixed time of the mission, and a
+    number of expansions.
     """
     closes_out = name == AUTO and can_close_out(mission)
     shared = _shared_roadmap(name, mission, world, margin_m, even_if_wide=closes_out)
@@ -34,7 +41,14 @@ def manager_named(
     lanes = [] if mission.driven_lanes is None else limited_lanes(mission.driven_lanes)
     fastest_mps = max(robot.speed_mps for robot in mission.all_robots if drives(robot))
     ahead_m = max(AHEAD_M, AHEAD_S * fastest_mps) if real else AHEAD_M
-    return ReservedTraffic(shared.plan(seed), margin_m=margin_m, lanes=lanes, ahead_m=ahead_m, sparing=real)
+    return ReservedTraffic(
+        shared.plan(seed, REAL_BUDGET if real else SIMULATED_BUDGET),
+        margin_m=margin_m,
+        lanes=lanes,
+        ahead_m=ahead_m,
+        sparing=real,
+        planning=ThreadedPlanning() if real else DelayedPlanning(),
+    )
 
 
 def shared_roadmap(name: str, mission: Mission) -> MissionRoadmap | None:
