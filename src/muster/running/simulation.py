@@ -8,6 +8,7 @@ import time
 from collections.abc import Collection, Sequence
 from contextlib import closing
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -104,6 +105,8 @@ class Simulation:
             law=request.law,
             exact=_is_exact(request),
             world=None if robot_paths is None else robot_paths.world,
+            plan=plan,
+            free_s=partial(_free_s, mission, request) if begun is None and request.duty is None else None,
         )
         self._world = recorded_world(there, request, recorder, None if begun is None else begun.snapshot)
         if on_world is not None:
@@ -364,6 +367,17 @@ def _with_objective(mission: Mission, plan: Plan) -> Plan:
         return plan
     verdict = verify(mission, plan, plan.ignored, plan.objective)
     return replace(plan, objective=verdict.objective_name, objective_value=verdict.value())
+
+
+def _free_s(mission: Mission, request: RunRequest, plan: Plan, within_s: float) -> float:
+    """Return the seconds that a plan takes in free traffic if nothing happens; inf if not all is done well in time."""
+    how = ObservedRun(traffic=FREE, dt_s=request.dt_s, seed=request.seed, ignore=request.ignore)
+    with closing(Simulation(replace(mission, events=()), plan, how)) as trial:
+        while not trial.done and trial.time_s < within_s:
+            trial.advance(within_s)
+        report = trial.result()
+    is_well = trial.done and not report.contacts and not report.tasks_lost
+    return trial.time_s if is_well else math.inf
 
 
 def _is_exact(request: RunRequest) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from muster.mission.model import Mission
 from muster.motion.map_world import World
 from muster.traffic.blockages.closed_rings import can_close_out
@@ -17,6 +19,13 @@ from muster.traffic.roadmaps.roadmap import MARGIN_M
 SIMULATED_BUDGET, REAL_BUDGET = Budget(expansions=1_000_000), Budget(seconds=0.5)
 """How long a plan is improved while robots go on by the plan before, in simulated missions and by real robots."""
 
+IsFaster = Callable[[MissionRoadmap], bool]
+"""Whether robots that have room to pass each other are faster by reservation on a roadmap."""
+
+
+def _never(made: MissionRoadmap) -> bool:
+    return False
+
 
 def manager_named(
     name: str,
@@ -26,16 +35,17 @@ def manager_named(
     world: World | None = None,
     margin_m: float = MARGIN_M,
     real: bool = False,
+    is_faster: IsFaster = _never,
 ) -> TrafficManager | None:
     """The manager of a mission's traffic; None where robots pass each other as they meet.
 
     Parameters and errors are those of `shared_roadmap`. With `auto` traffic is by reservation also where robots at rest
-    can close others out of their ends. `real` robots get as few orders as possible (`ReservedTraffic.sparing`), and
-    their traffic is planned in a thread, for a time; that of simulated ones takes a fixed time of the mission, and a
-    number of expansions.
+    can close others out of their ends, and where `is_faster` says so. `real` robots get as few orders as possible
+    (`ReservedTraffic.sparing`), and their traffic is planned in a thread, for a time; that of simulated ones takes a
+    fixed time of the mission, and a number of expansions.
     """
-    closes_out = name == AUTO and can_close_out(mission)
-    shared = _shared_roadmap(name, mission, world, margin_m, even_if_wide=closes_out)
+    chosen = RESERVE if name == AUTO and can_close_out(mission) else name
+    shared = _shared_roadmap(chosen, mission, world, margin_m, is_faster)
     if shared is None:
         return None
     lanes = [] if mission.driven_lanes is None else limited_lanes(mission.driven_lanes)
@@ -63,13 +73,13 @@ def shared_roadmap(name: str, mission: Mission) -> MissionRoadmap | None:
     MissionError, MissingExtraError
         as `World.of`.
     """
-    return _shared_roadmap(name, mission, None, MARGIN_M)
+    return _shared_roadmap(name, mission, None, MARGIN_M, _never)
 
 
 def _shared_roadmap(
-    name: str, mission: Mission, world: World | None, margin_m: float, *, even_if_wide: bool = False
+    name: str, mission: Mission, world: World | None, margin_m: float, is_faster: IsFaster
 ) -> MissionRoadmap | None:
-    if not may_reserve(RESERVE if even_if_wide else name, mission):
+    if not may_reserve(name, mission):
         return None
     mapped = mission.has_ways_by_map
     if mapped and world is None:
@@ -77,4 +87,4 @@ def _shared_roadmap(
     shared = MissionRoadmap.of(mission, world if mapped else None, margin_m=margin_m)
     if name != AUTO or mission.driven_lanes is not None:
         return shared
-    return shared if even_if_wide or shared.roadmap.narrow.any() else None
+    return shared if shared.roadmap.narrow.any() or is_faster(shared) else None

@@ -355,6 +355,8 @@ class ReservedTraffic:
             return ""
         if grant.waits_for >= 0:
             return self._parts[grant.waits_for].robot.id
+        if self._request is not None:  # whether it has found no way shows when the plan is there
+            return part.port.waits_for
         return self._nearest(part) if self._falls_short(part) and not grant.points else ""
 
     def _nearest(self, part: Part) -> str:
