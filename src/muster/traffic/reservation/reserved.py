@@ -357,7 +357,7 @@ class ReservedTraffic:
             return self._parts[grant.waits_for].robot.id
         if self._request is not None:  # whether it has found no way shows when the plan is there
             return part.port.waits_for
-        return self._nearest(part) if self._falls_short(part) and not grant.points else ""
+        return self._nearest(part) if self._falls_short(part) else ""
 
     def _nearest(self, part: Part) -> str:
         """The robot next to one that has found no way; one that others have to get round, where such cut it off."""
