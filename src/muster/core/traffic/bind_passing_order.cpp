@@ -58,7 +58,6 @@ class CheckedOrder {
     if (planned.robots_ != robots_) throw std::invalid_argument("planned: robots were added since");
     order_.adopt(std::move(planned.order_));
   }
-  void drop_ahead() { order_.drop_ahead(); }
   void cut() { order_.cut(); }
   void stop(int robot, Pair place) { checked(robot).stop(robot, point_of(place)); }
   void progress(int robot, int passed, Pair near) { checked(robot).progress(robot, passed, point_of(near)); }
@@ -131,7 +130,6 @@ void bind_passing_order(nb::module_& m) {
       .def("adopt", &CheckedOrder::adopt, "planned"_a,
            "Replace the moves that were not to begin by those of a plan, appended to what `hold` returned, which is "
            "used up.")
-      .def("drop_ahead", &CheckedOrder::drop_ahead, "Drop all moves that have not begun.")
       .def("cut", &CheckedOrder::cut, "Let all moves end where robots have been let go to.")
       .def("stop", &CheckedOrder::stop, "robot"_a, "place"_a,
            "A robot that has been let go further stands here, for all that is known: its moves are dropped.")

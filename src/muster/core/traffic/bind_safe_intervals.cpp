@@ -96,7 +96,8 @@ void bind_safe_intervals(nb::module_& m) {
             check(ways);
             if (expansions < 1) throw std::invalid_argument("expansions: expected at least 1");
             const nb::gil_scoped_release free;
-            new (self) SharedWays(paths, travellers, std::move(order), {ways, expansions, at_once, PlanningBudget(most, seconds)}, seed);
+            new (self) SharedWays(paths, travellers, std::move(order),
+                                  {ways, expansions, at_once, PlanningBudget(most, seconds)}, seed);
           },
           "paths"_a, "travellers"_a, nb::kw_only(), "order"_a, "ways"_a, "expansions"_a = 300, "seed"_a,
           "at_once"_a = false, "most_expansions"_a = std::numeric_limits<std::int64_t>::max(),

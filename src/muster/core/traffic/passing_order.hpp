@@ -50,12 +50,9 @@ class PassingOrder {
   // A robot may go as far as this stop of its moves.
   void lead(int robot, int stop) { bots_[robot].stop = stop; }
 
-  // Drops all moves that have not begun.
-  void drop_ahead();
-
-  // While a plan is made, only some moves may begin: of each robot those up to its stop that begin within so many metres
-  // from where it is, and depend on no other move that may not. Returns the order of these and of the begun moves, with
-  // the numbers that they have here: a plan appends its moves to it.
+  // While a plan is made, only some moves may begin: of each robot those up to its stop that begin within so many
+  // metres from where it is, and depend on no other move that may not. Returns the order of these and of the begun
+  // moves, with the numbers that they have here: a plan appends its moves to it.
   PassingOrder hold(const std::vector<double>& metres);
 
   // No plan comes: all moves may begin again.
@@ -137,6 +134,8 @@ class PassingOrder {
 
   // Whether a lane that a move enters is full when all moves are done.
   bool enters_full_lane(const Move& m) const;
+  // Drops all moves that have not begun.
+  void drop_ahead();
   // Drops the moves of a robot after the last one that `stays`.
   template <class Stays>
   void drop_after(Bot& bot, Stays stays);
