@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from muster import Negotiation, ParameterError, simulate, solve
+from muster import Negotiation, ParameterError, Simulation, simulate, solve
 from muster.mission.lanes import Lane, Lanes
-from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
+from muster.mission.model import Event, Map, Mission, Robot, Rules, Task, Zone
+from muster.running.free_traffic import free_s
+from muster.running.observed_run import ObservedRun
 from muster.running.traffic_choice import LOOSE_MARGIN_M, manager_for
 from muster.traffic.roadmaps.roadmap import MARGIN_M
 from muster_studies.jams import scenes
@@ -111,14 +113,14 @@ def crossing():
     return mission, solve(mission, "greedy")
 
 
-@pytest.mark.parametrize(("free_s", "is_reserved"), [(9.0, False), (1000.0, True)])
-def test_where_there_is_room_the_faster_one_by_forecast_is_chosen(crossing, free_s, is_reserved):
+@pytest.mark.parametrize(("takes_s", "is_reserved"), [(9.0, False), (1000.0, True)])
+def test_where_there_is_room_the_faster_one_by_forecast_is_chosen(crossing, takes_s, is_reserved):
     mission, plan = crossing
     asked = []
 
     def free(plan, within_s):
         asked.append(within_s)
-        return free_s
+        return takes_s
 
     assert (manager_for("auto", mission, plan=plan, free_s=free) is not None) is is_reserved
     assert 9.0 < asked[0] < 1000.0
@@ -137,3 +139,11 @@ def test_a_run_in_auto_takes_as_long_as_the_faster_mode(crossing, radius_m):
     )
     assert auto in (free, reserved)
     assert auto <= 1.2 * min(free, reserved)
+
+
+def test_free_traffic_is_forecast_without_what_happens_later(crossing):
+    mission, plan = crossing
+    failing = replace(mission, events=(Event(at_s=1.0, robot_fails="r_0"),))
+    alone_s = free_s(Simulation, mission, ObservedRun(), plan, 100.0)
+    assert free_s(Simulation, failing, ObservedRun(), plan, 100.0) == alone_s < 100.0
+    assert free_s(Simulation, mission, ObservedRun(), plan, 0.5 * alone_s) == float("inf")

@@ -1014,9 +1014,6 @@ class PassingOrder:
         Replace the moves that were not to begin by those of a plan, appended to what `hold` returned, which is used up.
         """
 
-    def drop_ahead(self) -> None:
-        """Drop all moves that have not begun."""
-
     def cut(self) -> None:
         """Let all moves end where robots have been let go to."""
 

@@ -20,6 +20,7 @@ from muster.mission.supported_features import require_supported
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
+from muster.running.free_traffic import free_s
 from muster.running.observed_run import ObservedRun
 from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.replanning import planning_of
@@ -106,7 +107,7 @@ class Simulation:
             exact=_is_exact(request),
             world=None if robot_paths is None else robot_paths.world,
             plan=plan,
-            free_s=partial(_free_s, mission, request) if begun is None and request.duty is None else None,
+            free_s=None if begun or request.duty else partial(free_s, Simulation, mission, request),
         )
         self._world = recorded_world(there, request, recorder, None if begun is None else begun.snapshot)
         if on_world is not None:
@@ -367,17 +368,6 @@ def _with_objective(mission: Mission, plan: Plan) -> Plan:
         return plan
     verdict = verify(mission, plan, plan.ignored, plan.objective)
     return replace(plan, objective=verdict.objective_name, objective_value=verdict.value())
-
-
-def _free_s(mission: Mission, request: RunRequest, plan: Plan, within_s: float) -> float:
-    """Return the seconds that a plan takes in free traffic if nothing happens; inf if not all is done well in time."""
-    how = ObservedRun(traffic=FREE, dt_s=request.dt_s, seed=request.seed, ignore=request.ignore)
-    with closing(Simulation(replace(mission, events=()), plan, how)) as trial:
-        while not trial.done and trial.time_s < within_s:
-            trial.advance(within_s)
-        report = trial.result()
-    is_well = trial.done and not report.contacts and not report.tasks_lost
-    return trial.time_s if is_well else math.inf
 
 
 def _is_exact(request: RunRequest) -> bool:

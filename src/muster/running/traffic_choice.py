@@ -37,6 +37,7 @@ def manager_for(
     exact: bool = False,
     world: World | None = None,
     real: bool = False,
+    in_thread: bool = False,
     plan: Plan | None = None,
     free_s: FreeTraffic | None = None,
 ) -> TrafficManager | None:
@@ -50,6 +51,8 @@ def manager_for(
         whether robots drive exactly as told, and know where they are.
     real
         whether they are real: each order costs them time.
+    in_thread
+        whether time goes on while traffic is planned.
     world
         of the mission, where it is at hand.
     plan, free_s
@@ -65,10 +68,12 @@ def manager_for(
         raise ParameterError(f"traffic: {traffic}; expected free: by law {law} robots leave straight ways")
     chosen = of_run(traffic, avoidance=avoidance, law=law)
     margin_m = MARGIN_M if exact else LOOSE_MARGIN_M
+    named = partial(
+        manager_named, chosen, mission, seed, world=world, margin_m=margin_m, real=real, in_thread=in_thread
+    )
     if plan is None or free_s is None:
-        return manager_named(chosen, mission, seed, world=world, margin_m=margin_m, real=real)
-    is_faster = partial(_is_faster, mission, plan, free_s)
-    return manager_named(chosen, mission, seed, world=world, margin_m=margin_m, real=real, is_faster=is_faster)
+        return named()
+    return named(is_faster=partial(_is_faster, mission, plan, free_s))
 
 
 def _is_faster(mission: Mission, plan: Plan, free_s: FreeTraffic, made: MissionRoadmap) -> bool:

@@ -16,8 +16,8 @@ from muster.traffic.reservation.reserved import AHEAD_M, AHEAD_S, ReservedTraffi
 from muster.traffic.roadmaps.given_lanes import limited_lanes
 from muster.traffic.roadmaps.roadmap import MARGIN_M
 
-SIMULATED_BUDGET, REAL_BUDGET = Budget(expansions=1_000_000), Budget(seconds=0.5)
-"""How long a plan is improved while robots go on by the plan before, in simulated missions and by real robots."""
+BUDGET, THREAD_BUDGET = Budget(expansions=1_000_000), Budget(seconds=0.5)
+"""How long a plan is improved while robots go on by the plan before; and in a thread."""
 
 IsFaster = Callable[[MissionRoadmap], bool]
 """Whether robots that have room to pass each other are faster by reservation on a roadmap."""
@@ -35,14 +35,15 @@ def manager_named(
     world: World | None = None,
     margin_m: float = MARGIN_M,
     real: bool = False,
+    in_thread: bool = False,
     is_faster: IsFaster = _never,
 ) -> TrafficManager | None:
     """The manager of a mission's traffic; None where robots pass each other as they meet.
 
     Parameters and errors are those of `shared_roadmap`. With `auto` traffic is by reservation also where robots at rest
     can close others out of their ends, and where `is_faster` says so. `real` robots get as few orders as possible
-    (`ReservedTraffic.sparing`), and their traffic is planned in a thread, for a time; that of simulated ones takes a
-    fixed time of the mission, and a number of expansions.
+    (`ReservedTraffic.sparing`). Traffic is planned `in_thread`, for a time; or planning takes a fixed time of the
+    mission, and a number of expansions, so that a seed gives one run.
     """
     chosen = RESERVE if name == AUTO and can_close_out(mission) else name
     shared = _shared_roadmap(chosen, mission, world, margin_m, is_faster)
@@ -52,12 +53,12 @@ def manager_named(
     fastest_mps = max(robot.speed_mps for robot in mission.all_robots if drives(robot))
     ahead_m = max(AHEAD_M, AHEAD_S * fastest_mps) if real else AHEAD_M
     return ReservedTraffic(
-        shared.plan(seed, REAL_BUDGET if real else SIMULATED_BUDGET),
+        shared.plan(seed, THREAD_BUDGET if in_thread else BUDGET),
         margin_m=margin_m,
         lanes=lanes,
         ahead_m=ahead_m,
         sparing=real,
-        planning=ThreadedPlanning() if real else DelayedPlanning(),
+        planning=ThreadedPlanning() if in_thread else DelayedPlanning(),
     )
 
 
