@@ -115,7 +115,9 @@ def test_a_robot_does_not_work_at_its_goal_before_there_is_a_way_to_it():
 def test_robots_go_on_by_the_plan_before_while_a_thread_plans():
     gate = threading.Event()
     gate.set()
-    traffic = Traffic(ThreadedPlanning(takes_s=2.0), before=lambda: gate.wait(60))
+    planning = ThreadedPlanning(takes_s=2.0)
+    traffic = Traffic(planning, before=lambda: gate.wait(60))
+    planning.clock = lambda: traffic.drive.now
     traffic.go_to(20.0)
 
     def wait_for_plan(plans):
@@ -159,3 +161,15 @@ def test_what_goes_wrong_in_the_thread_is_raised_where_robots_are_steered():
         traffic.traffic.planning._plan.result(60)
     with pytest.raises(RuntimeError, match="no memory"):
         traffic.go_on()
+
+
+def test_a_mission_whose_time_goes_faster_than_the_clock_waits_for_the_plan():
+    planning = ThreadedPlanning(takes_s=1.0, clock=lambda: 0.0)
+    gate = threading.Event()
+    traffic = Traffic(planning, before=lambda: gate.wait(60))
+    traffic.go_to(20.0)
+    traffic.go_on(3)
+    assert (traffic.traffic.plans, planning.result(traffic.drive.now)) == (0, None)
+    gate.set()
+    traffic.go_on(3)
+    assert traffic.traffic.plans == 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -64,10 +65,13 @@ class DelayedPlanning:
 class ThreadedPlanning:
     """Planning in a thread of its own, which ends when nobody refers to the planning any more.
 
-    A plan that is asked for instead of another is begun when the thread has ended that one.
+    A plan that is asked for instead of another is begun when the thread has ended that one. Where the time of a mission
+    goes faster than that of the machine, the plan is waited for when planning was to have ended.
     """
 
     takes_s: float = _THREAD_S
+    clock: Callable[[], float] = time.monotonic
+    _asked_s: tuple[float, float] = (-math.inf, -math.inf)  # by the mission's time, and by the clock
     _thread: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "traffic-planning"))
     _plan: Future[PlannedMoves] | None = None
 
@@ -75,8 +79,11 @@ class ThreadedPlanning:
         """See `Planning`."""
         if self._plan is not None:
             self._plan.cancel()
+        self._asked_s = now, self.clock()
         self._plan = self._thread.submit(plan)
 
     def result(self, now: float) -> PlannedMoves | None:
         """See `Planning`."""
-        return self._plan.result() if self._plan is not None and self._plan.done() else None
+        asked_s, clock_s = self._asked_s
+        is_overdue = now - asked_s >= self.takes_s > self.clock() - clock_s
+        return self._plan.result() if self._plan is not None and (is_overdue or self._plan.done()) else None
