@@ -1,10 +1,10 @@
-"""No more robots are on a lane at once than its capacity says, whole ways planned or step by step."""
+"""No more robots are on a lane at once than its capacity says, also where ways are planned all at once."""
 
 import numpy as np
 import pytest
 from tests.running.lane_runs import carried_out
 
-from muster.traffic.journeys.roadmap_plan import RoadmapPlan
+from muster.traffic.journeys import roadmap_plan
 
 LOOP = """
 schema: muster/1
@@ -40,12 +40,12 @@ def most_between(poses):
     return inside.sum(axis=1).max()
 
 
-@pytest.mark.parametrize("whole", [True, False])
+@pytest.mark.parametrize("at_once", [True, False])
 @pytest.mark.parametrize("capacity", [1, 2])
-def test_a_lane_is_left_before_one_too_many_enters_it(capacity, whole, tmp_path, monkeypatch):
+def test_a_lane_is_left_before_one_too_many_enters_it(capacity, at_once, tmp_path, monkeypatch):
     """As many stop to work on the lane as are in the mission: the planner lets them come one after the other."""
-    if not whole:
-        monkeypatch.setattr(RoadmapPlan, "whole", lambda plan, travellers: None)
+    if at_once:
+        monkeypatch.setattr(roadmap_plan, "_MOST_BY_INTERVALS", 0)
     report, poses = carried_out(LOOP.replace("CAPACITY", str(capacity)), tmp_path, 300.0)
     assert len(report.tasks_done) == 7
     assert most_between(poses) == capacity

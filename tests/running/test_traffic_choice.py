@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from muster import Negotiation, ParameterError, simulate, solve
+from muster import Negotiation, ParameterError, Simulation, simulate, solve
 from muster.mission.lanes import Lane, Lanes
-from muster.mission.model import Map, Mission, Robot, Rules, Task, Zone
+from muster.mission.model import Event, Map, Mission, Robot, Rules, Task, Zone
+from muster.running.free_traffic import free_s
+from muster.running.observed_run import ObservedRun
 from muster.running.traffic_choice import LOOSE_MARGIN_M, manager_for
 from muster.traffic.roadmaps.roadmap import MARGIN_M
 from muster_studies.jams import scenes
@@ -96,3 +98,52 @@ def test_reservation_is_refused_where_it_cannot_be(door):
 def test_without_a_centre_nothing_is_reserved(hall):
     with pytest.raises(ParameterError, match="traffic: reserve; expected free: without a centre"):
         simulate(hall, Negotiation(), traffic="reserve")
+
+
+@pytest.fixture(scope="module")
+def crossing():
+    """Four robots change places in a room that has space for all, and its plan."""
+    places = ((2.0, 2.0), (8.0, 8.0), (2.0, 8.0), (8.0, 2.0))
+    robots = tuple(Robot(id=f"r_{k}", position=at, radius_m=0.4) for k, at in enumerate(places))
+    goals = (places[1], places[0], places[3], places[2])
+    tasks = tuple(Task(id=f"t_{k}", position=at, only_robots=(f"r_{k}",)) for k, at in enumerate(goals))
+    boundary = ((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0))
+    rules = Rules(travel="map", return_to_start=False)
+    mission = Mission(robots=robots, tasks=tasks, map=Map(boundary=boundary), rules=rules)
+    return mission, solve(mission, "greedy")
+
+
+@pytest.mark.parametrize(("takes_s", "is_reserved"), [(9.0, False), (1000.0, True)])
+def test_where_there_is_room_the_faster_one_by_forecast_is_chosen(crossing, takes_s, is_reserved):
+    mission, plan = crossing
+    asked = []
+
+    def free(plan, within_s):
+        asked.append(within_s)
+        return takes_s
+
+    assert (manager_for("auto", mission, plan=plan, free_s=free) is not None) is is_reserved
+    assert 9.0 < asked[0] < 1000.0
+    assert manager_for("auto", mission) is None
+    assert manager_for("free", mission, plan=plan, free_s=free) is None
+    assert len(asked) == 1
+
+
+@pytest.mark.parametrize("radius_m", [0.2, 1.2])
+def test_a_run_in_auto_takes_as_long_as_the_faster_mode(crossing, radius_m):
+    mission, plan = crossing
+    mission = replace(mission, robots=tuple(replace(robot, radius_m=radius_m) for robot in mission.robots))
+    plan = solve(mission, "greedy")
+    auto, free, reserved = (
+        simulate(mission, plan, traffic=traffic).mission_time_s for traffic in ("auto", "free", "reserve")
+    )
+    assert auto in (free, reserved)
+    assert auto <= 1.2 * min(free, reserved)
+
+
+def test_free_traffic_is_forecast_without_what_happens_later(crossing):
+    mission, plan = crossing
+    failing = replace(mission, events=(Event(at_s=1.0, robot_fails="r_0"),))
+    alone_s = free_s(Simulation, mission, ObservedRun(), plan, 100.0)
+    assert free_s(Simulation, failing, ObservedRun(), plan, 100.0) == alone_s < 100.0
+    assert free_s(Simulation, mission, ObservedRun(), plan, 0.5 * alone_s) == float("inf")

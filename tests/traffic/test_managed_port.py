@@ -6,7 +6,7 @@ import pytest
 
 from muster import Robot
 from muster.motion.port import Telemetry, Waypoint
-from muster.traffic.journeys.travellers import Move
+from muster.traffic.journeys.travellers import Move, PlannedMoves
 from muster.traffic.reservation.reserved import NO_PROGRESS_S, RETRY_S, ReservedTraffic
 
 GOAL = (9.0, 0.0, 0.0)
@@ -35,21 +35,15 @@ class Drive:
 class Traffic:
     """Traffic of one robot that is sent to a goal; its plans, and who was fixed in each."""
 
-    stepwise, way = False, None
-
     def __init__(self) -> None:
         self.fixed: list[bool] = []
-        self.sought = 0
+        self.found = PlannedMoves([Move(0, GOAL[:2])])
         self.traffic, self.drive = ReservedTraffic(self), Drive()
         self.traffic.managed(Robot(id="r_0", position=(0.0, 0.0), radius_m=0.3), self.drive).send([Waypoint(GOAL)])
 
     def __call__(self, travellers):
         self.fixed.append(travellers[0].fixed)
-        return [] if travellers[0].fixed else [Move(0, GOAL[:2])]
-
-    def whole(self, travellers):
-        self.sought += 1
-        return self.way
+        return PlannedMoves() if travellers[0].fixed else self.found
 
     def go_on(self, seconds, speed):
         until_s = self.drive.now + seconds
@@ -102,21 +96,18 @@ def test_who_drops_the_order_to_work_at_its_goal_is_told_anew(traffic):
     ]  # to be at work there, and anew
 
 
-def test_moves_that_were_planned_step_by_step_give_way_to_whole_ways_alone(traffic):
-    """Other steps may lead back, though these end before the goal."""
-    plans, now = len(traffic.fixed), traffic.drive.now
-    traffic.stepwise, traffic.traffic._planned_s = True, now
-    traffic.traffic._parts[0].goal = None  # as if it were to go elsewhere
-    assert traffic.traffic._plan_is_due(now + 2.0)  # another goal
-    traffic.traffic._parts[0].goal = GOAL[:2]
-    left_m = traffic.traffic._order.metres_left(0)
-    for _ in range(2):
-        traffic.go_on(2.0, speed=0.5)
-        assert (len(traffic.fixed), traffic.sought) == (plans, traffic.drive.now - now)
-        assert traffic.traffic._planned_s == now
-    assert traffic.traffic._order.metres_left(0) < left_m
-    traffic.way = [Move(0, (GOAL[0] - 1.0, 1.0)), Move(0, GOAL[:2])]
+def test_moves_of_an_incomplete_plan_give_way_to_a_complete_one_alone(traffic):
+    """Those of another incomplete plan may lead back."""
+    way_back = [Move(0, (-1.0, 0.0))]
+    traffic.found = PlannedMoves([Move(0, (GOAL[0] - 0.5, 0.0))], complete=False)
+    traffic.traffic.moved("r_0")  # a new plan is due
     traffic.go_on(1.0, speed=0.5)
-    assert traffic.traffic._planned_s > now
-    assert [point[:2] for point in traffic.traffic._parts[0].port.sent_ahead][-1] == GOAL[:2]
-    assert len(traffic.fixed) == plans
+    plans, planned_s, sought = traffic.traffic.plans, traffic.traffic._planned_s, len(traffic.fixed)
+    assert plans == 2
+    traffic.found = PlannedMoves(way_back, complete=False)
+    traffic.go_on(4.0, speed=0.5)
+    assert len(traffic.fixed) >= sought + 2  # and not taken
+    assert (traffic.traffic.plans, traffic.traffic._planned_s) == (plans, planned_s)
+    traffic.found = PlannedMoves([Move(0, (GOAL[0] - 1.0, 1.0)), Move(0, GOAL[:2])])
+    traffic.go_on(2.0, speed=0.5)
+    assert (traffic.traffic.plans, traffic.traffic._order.end(0)) == (plans + 1, GOAL[:2])

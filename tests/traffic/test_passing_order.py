@@ -47,19 +47,81 @@ def test_robots_that_stand_too_close_may_part(order):
 
 
 def test_a_new_plan_leaves_what_has_begun(order):
-    """A move that waits for one that has not begun does not begin either: both may be dropped."""
+    """A move that waits for one that has not begun does not begin either: both may be replaced."""
     first, second = order.add((0.0, 0.0), RADIUS_M), order.add((-1.0, 0.0), RADIUS_M)
     order.append(first, (1.0, 0.0))
     order.append(second, (0.0, 0.0))
     order.append(second, (0.0, 3.0))
     assert order.grant(second).points == []  # its first move leads to where the other has not yet left
-    order.drop_ahead()
-    assert (order.end(first), order.end(second)) == ((0.0, 0.0), (-1.0, 0.0))
-    order.append(first, (1.0, 0.0))
-    order.append(second, (0.0, 0.0))
+    planned = order.hold([0.0, 0.0])
+    assert (planned.end(first), planned.end(second)) == ((0.0, 0.0), (-1.0, 0.0))
+    planned.append(first, (1.0, 0.0))
+    planned.append(second, (0.0, 0.0))
+    order.adopt(planned)
     order.grant(first)
-    order.drop_ahead()
-    assert (order.end(first), order.end(second)) == ((1.0, 0.0), (-1.0, 0.0))
+    planned = order.hold([0.0, 0.0])
+    assert (planned.end(first), planned.end(second)) == ((1.0, 0.0), (-1.0, 0.0))
+
+
+def test_while_a_plan_is_made_robots_go_on_by_the_moves_that_it_leaves():
+    order = PassingOrder(margin=0.0, ahead=1.0)
+    robot, other = order.add((0.0, 0.0), 0.3), order.add((0.0, 3.0), 0.3)
+    for x in (1.0, 2.0, 3.0, 4.0):
+        order.append(robot, (x, 0.0))
+    order.append(other, (3.0, 3.0))
+    assert order.grant(robot).points == [(1.0, 0.0)]
+    planned = order.hold([1.5, 0.0])
+    assert (planned.end(robot), planned.end(other)) == ((2.0, 0.0), (0.0, 3.0))
+    order.progress(robot, 1, (1.0, 0.0))
+    assert order.grant(robot).points == [(2.0, 0.0)]
+    order.progress(robot, 2, (2.0, 0.0))
+    waits = order.grant(robot)
+    assert (waits.points, waits.last) == ([], False)
+    assert order.grant(other).points == []
+    assert order.metres_left(robot) == 2.0  # what it is to go by the plan before
+    planned.extend([(other, (0.0, 1.0), 0, 1.0), (robot, (2.0, 5.0), 0, 0.5)])
+    order.adopt(planned)
+    assert (order.end(robot), order.end(other)) == ((2.0, 5.0), (0.0, 1.0))
+    grant = order.grant(robot)
+    assert (grant.points, grant.speeds) == ([(2.0, 5.0)], [0.5])
+    assert order.grant(other).points == [(0.0, 1.0)]
+    assert (order.passed(robot), order.metres_left(robot)) == (2, 5.0)
+
+
+def test_moves_that_wait_for_what_a_plan_may_replace_do_not_begin_meanwhile(order):
+    first, second = order.add((-2.0, 0.0), RADIUS_M), order.add((0.0, -2.0), RADIUS_M)
+    order.append(first, (2.0, 0.0))
+    order.append(second, (0.0, 2.0))
+    planned = order.hold([0.0, 10.0])
+    assert (planned.end(first), planned.end(second)) == ((-2.0, 0.0), (0.0, -2.0))
+    order.release()
+    assert order.grant(first).points == [(2.0, 0.0)]
+    planned = order.hold([0.0, 10.0])
+    assert (planned.end(first), planned.end(second)) == ((2.0, 0.0), (0.0, 2.0))
+
+
+def test_no_more_robots_go_on_a_lane_than_may_stand_there_if_others_stay():
+    """The robot on the lane may be planned anew to stay there."""
+    lane = LimitedLane((0.0, 0.0), (10.0, 0.0), most=1)
+    order = PassingOrder(margin=0.0, ahead=20.0, lanes=[lane])
+    inside, behind = order.add((8.0, 0.0), 0.3), order.add((-1.0, 0.0), 0.3)
+    order.append(inside, (12.0, 0.0))
+    order.append(behind, (2.0, 0.0))
+    assert order.hold([0.0, 5.0]).end(behind) == (-1.0, 0.0)
+    assert order.hold([5.0, 5.0]).end(behind) == (2.0, 0.0)
+
+
+def test_moves_of_a_robot_after_one_that_is_blocked_are_left_out(order):
+    robot, other = order.add((0.0, 0.0), RADIUS_M), order.add((2.0, 0.0), RADIUS_M)
+    order.extend([(robot, (2.0, 0.0), 0, 1.0), (other, (5.0, 0.0), 0, 1.0), (robot, (3.0, 0.0), 0, 1.0)])
+    assert (order.end(robot), order.end(other)) == ((0.0, 0.0), (5.0, 0.0))
+
+
+def test_a_plan_for_other_robots_is_refused(order):
+    planned = order.hold([])
+    order.add((0.0, 0.0), RADIUS_M)
+    with pytest.raises(ValueError, match="planned: robots were added since"):
+        order.adopt(planned)
 
 
 def test_moves_are_cut_where_robots_have_been_let_go_to(order):

@@ -23,7 +23,7 @@ def test_moves_after_a_goal_lead_on_from_it():
     behind = Traveller(
         Robot(id="b", position=(1.0, 0.4), radius_m=0.3), (1.0, 0.4), (Stop((5.5, 0.4), 2.0),), stays=False
     )
-    moves = plan([first, behind])
+    moves = plan([first, behind]).moves
     for traveller, goal in ((0, (4.0, 0.4)), (1, (5.5, 0.4))):
         own = [(move.to, move.stop) for move in moves if move.traveller == traveller]
         at = [to for to, _ in own].index(goal)

@@ -996,8 +996,23 @@ class PassingOrder:
         Let a robot go as far as this stop of its moves, 0 at first; others are planned after the rest, too.
         """
 
-    def drop_ahead(self) -> None:
-        """Drop all moves that have not begun."""
+    def extend(self, moves: Sequence[tuple[int, tuple[float, float], int, float]]) -> None:
+        """
+        Append moves (robot, to, stop, speed); those of a robot after one that is not appended are left out.
+        """
+
+    def hold(self, metres: Sequence[float]) -> PassingOrder:
+        """
+        While a plan is made, let only those moves begin that each robot begins within so many metres, up to its stop, and that depend on no other. Returns the order of these: a plan appends its moves to it.
+        """
+
+    def release(self) -> None:
+        """No plan comes: all moves may begin again."""
+
+    def adopt(self, planned: PassingOrder) -> None:
+        """
+        Replace the moves that were not to begin by those of a plan, appended to what `hold` returned, which is used up.
+        """
 
     def cut(self) -> None:
         """Let all moves end where robots have been let go to."""
@@ -1050,9 +1065,9 @@ class SharedWays:
     Ways of all who share a roadmap: one after the other, then few at a time anew [li2021].
     """
 
-    def __init__(self, paths: SafeIntervals, travellers: Sequence[Traveller], *, order: Sequence[int], ways: int, expansions: int = 300, seed: int, at_once: bool = False) -> None:
+    def __init__(self, paths: SafeIntervals, travellers: Sequence[Traveller], *, order: Sequence[int], ways: int, expansions: int = 300, seed: int, at_once: bool = False, most_expansions: int = 9223372036854775807, most_seconds: float = float('inf')) -> None:
         """
-        The first ways are sought in the order given; where some find none, or with `at_once`, all make way for each other, until so many expansions bring them no nearer to their stops. `ways` more are sought to improve them.
+        The first ways are sought in the order given; where some find none, or with `at_once`, all make way for each other, until so many expansions bring them no nearer to their stops. `ways` more are sought to improve them, as long as neither the expansions nor the seconds of all searches are spent.
         """
 
     def change(self, changes: Sequence[tuple[int, Traveller]], *, ways: int) -> None:
@@ -1062,6 +1077,12 @@ class SharedWays:
 
     def undo(self) -> None:
         """Take the last change back."""
+
+    @property
+    def expansions(self) -> int:
+        """
+        Of all searches so far: labels of ways, and configurations times robots.
+        """
 
     @property
     def order(self) -> list[int]:

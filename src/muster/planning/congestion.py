@@ -12,7 +12,7 @@ from muster.mission.model import Mission
 from muster.mission.plan import Plan, Route
 from muster.mission.values.arrays import Floats
 from muster.model.waiting import Waiting
-from muster.traffic.journeys.forecast import Forecast, Forecaster
+from muster.traffic.journeys.forecast import Forecast, Forecaster, is_forecast
 from muster.traffic.journeys.passage_delays import PassageDelays
 from muster.traffic.managers import shared_roadmap
 from muster.traffic.names import drives
@@ -20,9 +20,6 @@ from muster.traffic.names import drives
 if TYPE_CHECKING:
     from muster.model.problem import Problem
     from muster.traffic.mission_roadmap import MissionRoadmap
-
-_MOST = 3_000_000
-"""Robots and tasks times edges of the roadmap up to which traffic is forecast: for more that takes some seconds."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +50,7 @@ class SharedPassages:
             as `shared_roadmap`.
         """
         made = shared_roadmap(traffic, mission)
-        if made is None or (len(mission.robots) + len(mission.tasks)) * len(made.roadmap.edges) > _MOST:
+        if made is None or not is_forecast(mission, made.roadmap):
             return None
         return cls(mission, made, Forecaster(mission, made.plan()))
 

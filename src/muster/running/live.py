@@ -192,7 +192,8 @@ class Live:
         robot_paths = known_paths if ground is None else ground.paths
         traffic = request.traffic if ground is None and not self._lacks(HOLDS) else FREE
         world = None if robot_paths is None else robot_paths.world
-        manager = manager_for(traffic, mission, seed=seed, world=world, real=True)
+        in_thread = not has_simulated_time(fleet)
+        manager = manager_for(traffic, mission, seed=seed, world=world, real=True, in_thread=in_thread)
         managed = fleet if manager is None else FleetInTraffic(fleet, manager, mission)
         of_day = None if has_simulated_time(fleet) else clock
         self._fleet = FleetWithMissionClock(managed, begin_s, of_day, before_order)

@@ -78,8 +78,9 @@ class RunRequest(Settings):
     traffic: str = spec(
         Choice(TRAFFIC),
         "who passes first: reserve, by one plan for all that drive; free, as they meet. auto: reserve where the "
-        "mission gives lanes or its map has passages for one, or where robots at their ends can close others out, and "
-        "no avoidance and no other law than profile is asked for",
+        "mission gives lanes or its map has passages for one, where robots at their ends can close others out, or "
+        "where a simulated run of given tasks is forecast to be faster so, and no avoidance and no other law than "
+        "profile is asked for",
         default=DEFAULT,
     )
     law: str = spec(Choice(LAWS), "how robots move", default=PROFILE, counts=SIMULATED)

@@ -8,6 +8,7 @@ import time
 from collections.abc import Collection, Sequence
 from contextlib import closing
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ from muster.mission.supported_features import require_supported
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.running.begun import Begun
 from muster.running.camera_search import CameraSearch, OnLook, camera_search_for, with_found
+from muster.running.free_traffic import free_s
 from muster.running.observed_run import ObservedRun
 from muster.running.recorded_world import recorded_world, with_tracking
 from muster.running.replanning import planning_of
@@ -104,6 +106,8 @@ class Simulation:
             law=request.law,
             exact=_is_exact(request),
             world=None if robot_paths is None else robot_paths.world,
+            plan=plan,
+            free_s=None if begun or request.duty else partial(free_s, Simulation, mission, request),
         )
         self._world = recorded_world(there, request, recorder, None if begun is None else begun.snapshot)
         if on_world is not None:

@@ -12,7 +12,7 @@ from muster.mission.model import Mission, Point, Robot
 from muster.motion.actions import TaskMotion, plan
 from muster.motion.map_world import World
 from muster.motion.paths.lane_joints import ClosedLane
-from muster.traffic.journeys.roadmap_plan import RoadmapPlan
+from muster.traffic.journeys.roadmap_plan import UNLIMITED, Budget, RoadmapPlan
 from muster.traffic.roadmaps.doors import RoadmapDoors
 from muster.traffic.roadmaps.given_lanes import closed_lanes
 from muster.traffic.roadmaps.passing_rows import with_passing_rows
@@ -96,9 +96,9 @@ class MissionRoadmap:
             maker=maker,
         )
 
-    def plan(self, seed: int = 0) -> RoadmapPlan:
+    def plan(self, seed: int = 0, budget: Budget = UNLIMITED) -> RoadmapPlan:
         """What plans moves of robots on it, and of others that join, of whatever size."""
-        return RoadmapPlan(self.roadmap, self.spaces, seed, self.doors, self._for_more)
+        return RoadmapPlan(self.roadmap, self.spaces, seed, self.doors, self._for_more, budget)
 
     def points(self, places: Iterable[Point], robot: Robot) -> list[int]:
         """The points of places of a robot, or of its tasks."""

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from muster.mission.model import Mission, Robot
 
 AUTO, FREE, RESERVE = TRAFFIC = ("auto", "free", "reserve")
-"""`reserve` where robots can jam or close others out, else `free`; as robots meet; in the order of one plan for all."""
+"""`reserve` where robots can jam, close others out, or are faster so, else `free`; as robots meet; in the order of one
+plan for all."""
 DEFAULT = AUTO
 
 

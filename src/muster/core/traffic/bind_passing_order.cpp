@@ -1,9 +1,11 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <limits>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,6 +20,7 @@ namespace muster {
 namespace {
 
 using Pair = std::pair<double, double>;
+using PlannedMove = std::tuple<int, Pair, int, double>;  // robot, to, stop, speed
 
 Point point_of(const Pair& pair) { return {pair.first, pair.second}; }
 Pair pair_of(const Point& point) { return {point.x, point.y}; }
@@ -39,7 +42,22 @@ class CheckedOrder {
     return checked(robot).append(robot, point_of(to), stop, speed);
   }
   void lead(int robot, int stop) { checked(robot).lead(robot, stop); }
-  void drop_ahead() { order_.drop_ahead(); }
+  void extend(const std::vector<PlannedMove>& moves) {
+    std::vector<char> ended(robots_, false);
+    for (const auto& [robot, to, stop, speed] : moves)
+      if (!ended[checked_number(robot)]) ended[robot] = !order_.append(robot, point_of(to), stop, speed);
+  }
+  CheckedOrder hold(const std::vector<double>& metres) {
+    if (static_cast<int>(metres.size()) != robots_) throw std::invalid_argument("metres: expected one for each robot");
+    CheckedOrder kept(order_.hold(metres));
+    kept.robots_ = robots_;
+    return kept;
+  }
+  void release() { order_.release(); }
+  void adopt(CheckedOrder& planned) {
+    if (planned.robots_ != robots_) throw std::invalid_argument("planned: robots were added since");
+    order_.adopt(std::move(planned.order_));
+  }
   void cut() { order_.cut(); }
   void stop(int robot, Pair place) { checked(robot).stop(robot, point_of(place)); }
   void progress(int robot, int passed, Pair near) { checked(robot).progress(robot, passed, point_of(near)); }
@@ -50,8 +68,13 @@ class CheckedOrder {
   double metres_left(int robot) { return checked(robot).metres_left(robot); }
 
  private:
-  PassingOrder& checked(int robot) {
+  explicit CheckedOrder(PassingOrder order) : order_(std::move(order)) {}
+  int checked_number(int robot) const {
     if (robot < 0 || robot >= robots_) throw std::invalid_argument("robot: not in the order");
+    return robot;
+  }
+  PassingOrder& checked(int robot) {
+    checked_number(robot);
     return order_;
   }
 
@@ -98,7 +121,15 @@ void bind_passing_order(nb::module_& m) {
            "lane. `stop`: the number of the stop to which it leads; `speed`: the greatest on it.")
       .def("lead", &CheckedOrder::lead, "robot"_a, "stop"_a,
            "Let a robot go as far as this stop of its moves, 0 at first; others are planned after the rest, too.")
-      .def("drop_ahead", &CheckedOrder::drop_ahead, "Drop all moves that have not begun.")
+      .def("extend", &CheckedOrder::extend, "moves"_a, nb::call_guard<nb::gil_scoped_release>(),
+           "Append moves (robot, to, stop, speed); those of a robot after one that is not appended are left out.")
+      .def("hold", &CheckedOrder::hold, "metres"_a,
+           "While a plan is made, let only those moves begin that each robot begins within so many metres, up to its "
+           "stop, and that depend on no other. Returns the order of these: a plan appends its moves to it.")
+      .def("release", &CheckedOrder::release, "No plan comes: all moves may begin again.")
+      .def("adopt", &CheckedOrder::adopt, "planned"_a,
+           "Replace the moves that were not to begin by those of a plan, appended to what `hold` returned, which is "
+           "used up.")
       .def("cut", &CheckedOrder::cut, "Let all moves end where robots have been let go to.")
       .def("stop", &CheckedOrder::stop, "robot"_a, "place"_a,
            "A robot that has been let go further stands here, for all that is known: its moves are dropped.")

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <tuple>
@@ -89,20 +90,22 @@ void bind_safe_intervals(nb::module_& m) {
       .def(
           "__init__",
           [](SharedWays* self, SafeIntervals& paths, const std::vector<Traveller>& travellers, std::vector<int> order,
-             int ways, int expansions, std::uint64_t seed, bool at_once) {
+             int ways, int expansions, std::uint64_t seed, bool at_once, std::int64_t most, double seconds) {
             for (const Traveller& who : travellers) check(paths, who);
             check(order, travellers.size());
             check(ways);
             if (expansions < 1) throw std::invalid_argument("expansions: expected at least 1");
             const nb::gil_scoped_release free;
-            new (self) SharedWays(paths, travellers, std::move(order), {ways, expansions, at_once}, seed);
+            new (self) SharedWays(paths, travellers, std::move(order),
+                                  {ways, expansions, at_once, PlanningBudget(most, seconds)}, seed);
           },
           "paths"_a, "travellers"_a, nb::kw_only(), "order"_a, "ways"_a, "expansions"_a = 300, "seed"_a,
-          "at_once"_a = false, nb::keep_alive<1, 2>(),
+          "at_once"_a = false, "most_expansions"_a = std::numeric_limits<std::int64_t>::max(),
+          "most_seconds"_a = std::numeric_limits<double>::infinity(), nb::keep_alive<1, 2>(),
           "The first ways are sought in the order given; where some find none, or with `at_once`, all make way for "
           "each "
           "other, until so many expansions bring them no nearer to their stops. `ways` more are sought to improve "
-          "them.")
+          "them, as long as neither the expansions nor the seconds of all searches are spent.")
       .def(
           "change",
           [](SharedWays& self, const std::vector<std::pair<int, Traveller>>& changes, int ways) {
@@ -119,6 +122,8 @@ void bind_safe_intervals(nb::module_& m) {
           "changes"_a, nb::kw_only(), "ways"_a,
           "Travellers, by number, do something else: theirs are sought anew, and `ways` more.")
       .def("undo", &SharedWays::undo, "Take the last change back.")
+      .def_prop_ro("expansions", &SharedWays::expansions,
+                   "Of all searches so far: labels of ways, and configurations times robots.")
       .def_prop_ro("order", &SharedWays::order, "Of the travellers, in which these ways were found.")
       .def(
           "paths", [](const SharedWays& self) { return told(self.paths()); },

@@ -15,12 +15,13 @@ using Search = Lacam<RoadmapSteps>;
 constexpr int kLessAlone = 3;  // so many times fewer expansions where one goes on alone
 
 // Until it ends, or has come no nearer to the stops for so many expansions; the nearest node.
-int searched(Search& search, int idle_expansions) {
+int searched(Search& search, int idle_expansions, std::int64_t& expanded) {
   double least = std::numeric_limits<double>::infinity();
   int best = 0;
   std::size_t looked_at = 0;
   for (int idle = 0; search.state() == SearchState::kSearching && idle < idle_expansions; ++idle) {
     search.advance(1);
+    ++expanded;
     for (; looked_at < search.size(); ++looked_at) {
       if (search.node(static_cast<int>(looked_at)).least_cost >= least) continue;
       best = static_cast<int>(looked_at);
@@ -64,7 +65,9 @@ bool JointMoves::go_on(MovingTeam& team, bool settle, std::vector<SingleMove>& m
   Search search(RoadmapSteps(roadmap_, team, &tables_, settle), seed_, false);
   const RoadmapSteps& steps = search.generator();
   if (steps.cut_off()) return false;
-  const int last = searched(search, team.leader < 0 ? expansions_ : std::max(1, expansions_ / kLessAlone));
+  std::int64_t expanded = 0;
+  const int last = searched(search, team.leader < 0 ? expansions_ : std::max(1, expansions_ / kLessAlone), expanded);
+  expanded_ += expanded * team.robots();
   for (const int k : search.way_to(last)) {
     const auto& more = search.node(k).memo.moves;
     moves.insert(moves.end(), more.begin(), more.end());

@@ -25,6 +25,8 @@ class JointMoves {
   // waited already. So many expansions that come no nearer to the stops end a search.
   std::vector<SingleMove> moves(const std::vector<Traveller>& travellers, const std::vector<double>& ahead,
                                 int expansions, std::uint64_t seed);
+  // Configurations times robots that were expanded since this was last called.
+  std::int64_t take_expansions() { return std::exchange(expanded_, 0); }
 
  private:
   bool go_on(MovingTeam& team, bool settle, std::vector<SingleMove>& moves);
@@ -35,6 +37,7 @@ class JointMoves {
   RoadmapSteps::Tables& tables_;
   int expansions_ = 0;
   std::uint64_t seed_ = 0;
+  std::int64_t expanded_ = 0;
 };
 
 }  // namespace muster

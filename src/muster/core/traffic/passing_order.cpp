@@ -72,14 +72,24 @@ int PassingOrder::first_of_full(int lane, int robot, On on) const {
   return count >= lanes_[lane].most() ? first : -1;
 }
 
+bool PassingOrder::enters_full_lane(const Move& m) const {
+  const auto stands_on = [](const LimitedLane& lane, const Bot& other) { return lane.holds(other.end); };
+  return std::ranges::any_of(m.enters, [&](int lane) { return first_of_full(lane, m.robot, stands_on) >= 0; });
+}
+
 bool PassingOrder::append(int robot, Point to, int stop, double speed) {
   Bot& bot = bots_[robot];
   const Point from = bot.end;
   if (in_the_way(robot, from, to)) return false;
-  Move fresh{robot, from, to, distance(from, to), 0.0, 0.0, false, stop, speed, entered(from, to), {}};
-  const auto stands_on = [](const LimitedLane& lane, const Bot& other) { return lane.holds(other.end); };
-  const auto full = [&](int lane) { return first_of_full(lane, robot, stands_on) >= 0; };
-  if (std::ranges::any_of(fresh.enters, full)) return false;
+  Move fresh{.robot = robot,
+             .from = from,
+             .to = to,
+             .length = distance(from, to),
+             .stop = stop,
+             .speed = speed,
+             .enters = entered(from, to),
+             .earlier = {}};
+  if (enters_full_lane(fresh)) return false;
   for (std::size_t number = first_; number < first_ + moves_.size(); ++number) {
     const Move& before = move(number);
     if (before.robot < 0 || before.robot == robot) continue;
@@ -92,14 +102,62 @@ bool PassingOrder::append(int robot, Point to, int stop, double speed) {
   return true;
 }
 
-void PassingOrder::drop_ahead() {
-  for (Bot& bot : bots_) {
-    while (!bot.moves.empty() && !move(bot.moves.back()).begun) {
-      bot.end = move(bot.moves.back()).from;
-      move(bot.moves.back()).robot = -1;
-      bot.moves.pop_back();
-    }
+template <class Stays>
+void PassingOrder::drop_after(Bot& bot, Stays stays) {
+  while (!bot.moves.empty() && !stays(move(bot.moves.back()))) {
+    bot.end = move(bot.moves.back()).from;
+    move(bot.moves.back()).robot = -1;
+    bot.moves.pop_back();
   }
+}
+
+PassingOrder PassingOrder::hold(const std::vector<double>& metres) {
+  const auto begun = [](const Move& m) { return m.begun; };
+  PassingOrder kept(margin_, ahead_, lanes_);
+  kept.first_ = first_;
+  kept.bots_ = bots_;
+  for (Bot& bot : kept.bots_) {  // where it is when its begun moves are done
+    const auto next = std::ranges::find_if(bot.moves, [&](std::size_t number) { return !begun(move(number)); });
+    if (next != bot.moves.end()) bot.end = move(*next).from;
+    bot.moves.clear();
+  }
+  std::vector<double> ahead(bots_.size(), 0.0);
+  std::vector<char> ended(bots_.size(), false);
+  for (std::size_t number = first_; number < first_ + moves_.size(); ++number) {
+    Move& m = move(number);
+    kept.moves_.push_back({.robot = -1, .enters = {}, .earlier = {}});
+    if (m.robot < 0) continue;
+    Bot& bot = kept.bots_[m.robot];
+    const auto stays = [&](std::size_t e) { return over(e) || move(e).held; };
+    m.held = m.begun || (!ended[m.robot] && m.stop <= bot.stop && ahead[m.robot] < metres[m.robot] &&
+                         std::ranges::all_of(m.earlier, stays) && !kept.enters_full_lane(m));
+    if (!m.held) {
+      ended[m.robot] = true;
+      continue;
+    }
+    ahead[m.robot] += m.length - m.at;
+    kept.moves_.back() = m;
+    bot.moves.push_back(number);
+    if (!m.begun) bot.end = m.to;
+  }
+  holding_ = true;
+  return kept;
+}
+
+void PassingOrder::adopt(PassingOrder planned) {
+  for (Bot& bot : bots_) drop_after(bot, [](const Move& m) { return m.held; });
+  for (std::size_t number = first_ + moves_.size(); number < planned.first_ + planned.moves_.size(); ++number) {
+    Move& m = planned.move(number);
+    bots_[m.robot].moves.push_back(number);
+    moves_.push_back(std::move(m));
+  }
+  for (std::size_t k = 0; k < bots_.size(); ++k) bots_[k].end = planned.bots_[k].end;
+  holding_ = false;
+  drop_done();
+}
+
+void PassingOrder::drop_ahead() {
+  for (Bot& bot : bots_) drop_after(bot, [](const Move& m) { return m.begun; });
   while (!moves_.empty() && moves_.back().robot < 0) moves_.pop_back();
 }
 
@@ -212,7 +270,7 @@ PassingOrder::Grant PassingOrder::grant(int robot) {
   for (const std::size_t number : bot.moves) {
     Move& m = move(number);
     if (m.stop > bot.stop) break;
-    if (!m.begun && found.metres >= ahead_) {
+    if (!m.begun && (found.metres >= ahead_ || (holding_ && !m.held))) {
       found.last = false;
       break;
     }

@@ -50,8 +50,16 @@ class PassingOrder {
   // A robot may go as far as this stop of its moves.
   void lead(int robot, int stop) { bots_[robot].stop = stop; }
 
-  // Drops all moves that have not begun.
-  void drop_ahead();
+  // While a plan is made, only some moves may begin: of each robot those up to its stop that begin within so many
+  // metres from where it is, and depend on no other move that may not. Returns the order of these and of the begun
+  // moves, with the numbers that they have here: a plan appends its moves to it.
+  PassingOrder hold(const std::vector<double>& metres);
+
+  // No plan comes: all moves may begin again.
+  void release() { holding_ = false; }
+
+  // The moves of a plan, appended to what `hold` returned, replace those that were not to begin meanwhile.
+  void adopt(PassingOrder planned);
 
   // All moves end where robots have been let go to, and what has not begun is dropped.
   void cut();
@@ -84,14 +92,15 @@ class PassingOrder {
 
  private:
   struct Move {
-    int robot;
-    Point from, to;
-    double length;
+    int robot = -1;
+    Point from{}, to{};
+    double length = 0.0;
     double at = 0.0;       // metres that the robot has gone of it
     double granted = 0.0;  // metres to which it has been let go
     bool begun = false;
+    bool held = false;  // whether it may begin while a plan is made, which leaves it
     int stop = 0;
-    double speed;
+    double speed = 0.0;
     std::vector<int> enters;           // lanes, by number
     std::vector<std::size_t> earlier;  // moves of others that come near it or enter a lane that it enters, in order
   };
@@ -123,7 +132,16 @@ class PassingOrder {
   template <class On>
   int first_of_full(int lane, int robot, On on) const;
 
+  // Whether a lane that a move enters is full when all moves are done.
+  bool enters_full_lane(const Move& m) const;
+  // Drops all moves that have not begun.
+  void drop_ahead();
+  // Drops the moves of a robot after the last one that `stays`.
+  template <class Stays>
+  void drop_after(Bot& bot, Stays stays);
+
   double margin_, ahead_;
+  bool holding_ = false;
   std::vector<LimitedLane> lanes_;
   std::vector<Bot> bots_;
   std::deque<Move> moves_;  // finished ones at the front are dropped; a finished one further back has robot -1

@@ -237,6 +237,7 @@ std::optional<Way> SafeIntervals::path(const Traveller& who) {
       break;
     }
     if (label.ready > by_edge_.at(label.edge + 1, (label.interval + 1) * (legs + 1) + label.leg)) continue;
+    ++expansions_;
     const int point = label.edge < 0 ? who.start : graph.head(label.edge);
     const Span here = interval_of(label);
     if (label.leg < legs && who.stops[label.leg].point == point) {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "traffic/annotated_roadmap.hpp"
@@ -36,6 +37,8 @@ class SafeIntervals {
   void want(const Traveller& who);
   // The earliest way among all who are on it; one that stays at its start where there is none.
   Way way(const Traveller& who);
+  // Labels that were expanded in searches for ways since this was last called.
+  std::int64_t take_expansions() { return std::exchange(expansions_, 0); }
   // The ways of robots that make moves in turn, each as soon as those before it let it. Those that are fixed are on the
   // roadmap, and nobody else; afterwards all are.
   std::vector<Way> in_turn(std::span<const Traveller> travellers, std::span<const SingleMove> moves);
@@ -111,6 +114,7 @@ class SafeIntervals {
       around_;  // of each point those as near as any edge's, itself included
   GoalTables<std::vector<double>> to_goals_;
   std::map<std::pair<int, Manner>, SecondsToGoal> seconds_to_goals_;
+  std::int64_t expansions_ = 0;
 };
 
 }  // namespace muster

@@ -23,7 +23,7 @@ constexpr int kMoreWhereLost = 4;  // times as many ways are sought where some f
 
 SharedWays::SharedWays(SafeIntervals& roadmap, std::vector<Traveller> travellers, std::vector<int> order,
                        const Effort& effort, std::uint64_t seed)
-    : roadmap_(roadmap), random_(seed) {
+    : roadmap_(roadmap), random_(seed), budget_(effort.budget) {
   const std::size_t n = travellers.size();
   now_ = {std::move(travellers), std::move(order),    {},
           std::vector<char>(n),  std::vector<Way>(n), std::vector<Way>(n, {{}, 0.0, kNever})};
@@ -48,9 +48,11 @@ void SharedWays::plan_all() {
     now_.tails_to_leave = tails;
     clear();
     plan(now_.free);
-    if (best && !(cost() < least)) continue;
-    least = cost();
-    best = now_;
+    if (!best || cost() < least) {
+      least = cost();
+      best = now_;
+    }
+    if (budget_.is_spent()) break;
   }
   now_ = *std::move(best);
   clear();
@@ -68,6 +70,7 @@ void SharedWays::take_turns(int expansions) {
     for (double& rounds : changed)
       if (k > 0 && random_.uniform() < kChanged) rounds = kMostAhead * random_.uniform();
     const std::vector<SingleMove> moves = joint.moves(now_.travellers, changed, expansions, random_.next());
+    spend(joint.take_expansions());
     clear();
     now_.ways = roadmap_.in_turn(now_.travellers, moves);
     now_.all_rest = true;
@@ -76,7 +79,7 @@ void SharedWays::take_turns(int expansions) {
       best = now_;
       ahead = std::move(changed);
     }
-    if (cost().first > 0) break;  // further tries take long, and hardly get through
+    if (cost().first > 0 || budget_.is_spent()) break;  // further tries take long, and hardly get through
   }
   now_ = std::move(best);
   clear();
@@ -115,11 +118,11 @@ void SharedWays::find_alone(int traveller) {
   Traveller& who = now_.travellers[traveller];
   Way& found = now_.alone[traveller];
   const bool goes = !who.fixed && !who.stops.empty();
-  found = who.fixed ? Way{{}, 0.0, kNever} : roadmap_.way(who);
+  found = who.fixed ? Way{{}, 0.0, kNever} : way(traveller);
   while (!who.fixed && !who.stops.empty() && found.end == kNever) {
     who.stops.pop_back();
     who.stays = false;
-    found = roadmap_.way(who);
+    found = way(traveller);
   }
   now_.cut_off[traveller] = goes && who.stops.empty();
 }
@@ -131,7 +134,7 @@ void SharedWays::improve(int ways) {
   State best = now_;
   Cost least = cost();
   for (int sought = 0; std::ranges::any_of(now_.free, delayed);) {
-    if (sought >= (cost().first > 0 ? kMoreWhereLost : 1) * ways) break;
+    if (sought >= (cost().first > 0 ? kMoreWhereLost : 1) * ways || budget_.is_spent()) break;
     const std::vector<int> group = neighbours();
     sought += static_cast<int>(group.size());
     replan(group, worse * (1.0 - static_cast<double>(sought) / ways));
@@ -150,7 +153,7 @@ void SharedWays::plan(std::span<const int> group) {
   for (const int k : group) roadmap_.reserve_start(k, now_.travellers[k], now_.tails_to_leave);
   for (const int k : group) {
     roadmap_.release_start(k, now_.travellers[k]);
-    now_.ways[k] = roadmap_.way(now_.travellers[k]);
+    now_.ways[k] = way(k);
     roadmap_.reserve(k, now_.travellers[k], now_.ways[k]);
   }
 }
@@ -230,6 +233,17 @@ int SharedWays::late() {
     if (drawn < 0.0) return k;
   }
   return now_.free[random_.below(static_cast<int>(now_.free.size()))];
+}
+
+Way SharedWays::way(int traveller) {
+  Way found = roadmap_.way(now_.travellers[traveller]);
+  spend(roadmap_.take_expansions());
+  return found;
+}
+
+void SharedWays::spend(std::int64_t expansions) {
+  expansions_ += expansions;
+  budget_.spend(expansions);
 }
 
 Paths SharedWays::paths() const {

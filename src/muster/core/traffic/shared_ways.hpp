@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "random.hpp"
+#include "traffic/planning_budget.hpp"
 #include "traffic/safe_intervals.hpp"
 
 namespace muster {
@@ -25,6 +26,8 @@ class SharedWays {
     int ways;              // that are sought to improve the first ones; more where some have found none
     int expansions;        // of a search for moves of all at once that come no nearer to the stops, before it ends
     bool at_once = false;  // whether no ways are sought one after the other at first
+    // First ways are sought in any case; when it is spent they are not improved any more.
+    PlanningBudget budget{};
   };
 
   // The first ways are sought one after the other; where some find none, all go at once and make way for each other.
@@ -43,6 +46,8 @@ class SharedWays {
   Paths paths_alone() const;
   // In which they were planned.
   const std::vector<int>& order() const { return now_.order; }
+  // Of searches for ways and for moves of all at once, so far.
+  std::int64_t expansions() const { return expansions_; }
 
  private:
   using Cost = std::pair<int, double>;  // travellers without a way; seconds
@@ -75,10 +80,14 @@ class SharedWays {
   // Travellers that are planned anew together: one that is late, or has no way, and others that it meets.
   std::vector<int> neighbours();
   int late();
+  Way way(int traveller);
+  void spend(std::int64_t expansions);
 
   SafeIntervals& roadmap_;
   State now_, before_;
   Random random_;
+  PlanningBudget budget_;
+  std::int64_t expansions_ = 0;
 };
 
 }  // namespace muster

@@ -94,7 +94,8 @@ class TrafficWaits:
 
     def __init__(self, crew: Mapping[str, RobotState]) -> None:
         self._crew = crew
-        self._left_m: dict[str, tuple[int, float]] = {}  # of which order, at the last look
+        # At the last look: of which order, and whether traffic had planned it.
+        self._left_m: dict[str, tuple[tuple[int, bool], float]] = {}
         self._looked_s = 0.0
         self._out: set[str] = set()
         self.waits: dict[str, TrafficWait] = {}
@@ -229,9 +230,10 @@ class TrafficWaits:
     def _nearer_m(self, state: RobotState, left_m: float) -> float:
         """By how much its way has grown shorter since the last look; inf where its order is new."""
         robot = state.robot.id
-        order, before_m = self._left_m.get(robot, (-1, 0.0))
-        self._left_m[robot] = state.order, left_m
-        return before_m - left_m if order == state.order else math.inf
+        told, before_m = self._left_m.get(robot, ((-1, False), 0.0))
+        now_told = state.order, state.steered
+        self._left_m[robot] = now_told, left_m
+        return before_m - left_m if told == now_told else math.inf
 
     def _in_its_way(self, state: RobotState) -> str:
         """The nearest robot that another would touch on its way before it could stop; empty where there is none."""

@@ -15,9 +15,12 @@ from muster.traffic.journeys.joint_journeys import JointJourneys, Journey
 from muster.traffic.journeys.roadmap_plan import RoadmapPlan
 from muster.traffic.journeys.travellers import Stop, Traveller
 from muster.traffic.names import drives
+from muster.traffic.roadmaps.roadmap import Roadmap
 
 _WAYS_EACH, _LEAST_WAYS = 4, 40
 """Ways of each robot that are sought, and of all: they tell how long a plan takes as well as the more of a run do."""
+_MOST = 3_000_000
+"""Robots and tasks times edges of the roadmap up to which traffic is forecast: for more that takes some seconds."""
 _WAYS_AFTER_CHANGE = 12
 """Ways that are sought beside those of robots that go elsewhere."""
 
@@ -139,6 +142,11 @@ class Forecaster:
             for robot, among, by_itself in zip(self._driving, together, alone, strict=True)
         )
         return Forecast(robots, tuple(together), tuple(alone))
+
+
+def is_forecast(mission: Mission, roadmap: Roadmap) -> bool:
+    """Return whether robots and tasks are so few that their traffic on a roadmap is forecast."""
+    return (len(mission.robots) + len(mission.tasks)) * len(roadmap.edges) <= _MOST
 
 
 def forecast(mission: Mission, routes: Mapping[str, Sequence[RouteStop]], traffic: RoadmapPlan) -> Forecast:

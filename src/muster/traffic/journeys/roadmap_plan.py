@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from threading import Lock
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from muster import core
 from muster.motion.grid import Floats
 from muster.traffic.journeys.joint_journeys import JointJourneys
 from muster.traffic.journeys.roadmap_network import Network, Standing, with_places
-from muster.traffic.journeys.travellers import Move, Point, Traveller
+from muster.traffic.journeys.travellers import PlannedMoves, Point, Traveller
 from muster.traffic.roadmaps.doors import NO_DOORS, RoadmapDoors
 from muster.traffic.roadmaps.roadmap import Bools, Roadmap
 from muster.traffic.roadmaps.robot_spaces import Disc, RobotSpaces
@@ -27,9 +29,27 @@ _CORNERS = 8
 _SPARE_M = 0.01
 
 
+class Budget(NamedTuple):
+    """How long ways are improved; first ways are sought in any case.
+
+    Parameters
+    ----------
+    expansions : int or None
+        Of all searches, which are the same on every machine; None: any.
+    seconds : float
+        On the clock of the machine.
+    """
+
+    expansions: int | None = None
+    seconds: float = math.inf
+
+
+UNLIMITED = Budget()
+
+
 @dataclass
 class RoadmapPlan:
-    """Plans moves of travellers over a roadmap.
+    """Plans moves of travellers over a roadmap, in one thread at a time; others may ask it what is open and reached.
 
     Parameters
     ----------
@@ -43,10 +63,8 @@ class RoadmapPlan:
         of the mission, which close and open.
     for_more
         makes the roadmap for robots of further radii, which may join; without it there are none.
-    cut_off
-        see `Planner`.
-    stepwise
-        see `Planner`.
+    budget
+        of each plan but the first, before which no robot goes anywhere.
     """
 
     roadmap: Roadmap
@@ -54,11 +72,11 @@ class RoadmapPlan:
     seed: int = 0
     doors: RoadmapDoors = NO_DOORS
     for_more: Callable[[Sequence[float]], Roadmap] | None = None
-    cut_off: frozenset[int] = frozenset()
-    stepwise: bool = False
+    budget: Budget = UNLIMITED
     _closed: frozenset[str] = field(init=False)
     _priorities: list[str] = field(default_factory=list)
-    _known: Network | None = None
+    _known: tuple[Roadmap, frozenset[str], Network] | None = None  # for a roadmap and its closed doors
+    _admitting: Lock = field(default_factory=Lock)
     _more_m: list[float] = field(default_factory=list)  # radii of robots that have joined
 
     def __post_init__(self) -> None:
@@ -66,28 +84,14 @@ class RoadmapPlan:
 
     def close(self, doors: Collection[str]) -> None:
         """From now on these doors are closed, and the others open."""
-        self._closed, self._known = frozenset(doors), None
+        self._closed = frozenset(doors)
 
     def is_open(self, piece: Floats, radius_m: float) -> bool:
         """See `Planner`."""
         return bool(self.doors.open_ways(piece[np.newaxis], self._closed, radius_m)[0])
 
-    def __call__(self, travellers: Sequence[Traveller]) -> list[Move]:
-        """Moves in an order in which they are free, as far as paths are found."""
-        moves, through = self._planned(travellers)
-        self.stepwise = not through
-        return moves
-
-    def whole(self, travellers: Sequence[Traveller]) -> list[Move] | None:
+    def __call__(self, travellers: Sequence[Traveller]) -> PlannedMoves:
         """See `Planner`."""
-        moves, through = self._planned(travellers)
-        if not through:
-            return None
-        self.stepwise = False
-        return moves
-
-    def _planned(self, travellers: Sequence[Traveller]) -> tuple[list[Move], bool]:
-        """Moves through all stops, or to the first ones where that is not found; and whether all get there."""
         on = self._network_for(travellers)
         ways = _WAYS if self._priorities else _FIRST_WAYS
         shared = self._shared(on, travellers, ways)
@@ -96,8 +100,11 @@ class RoadmapPlan:
             shared = self._shared(on, [_to_first_stop(who) for who in travellers], ways)
             moves, ends = shared.paths()
         self._priorities = [travellers[k].robot.id for k in shared.order]
-        self.cut_off = frozenset(k for k, end in enumerate(ends) if math.isnan(end))
-        return [on.move(traveller, edge, stop) for _, traveller, edge, stop in moves], math.inf not in ends
+        return PlannedMoves(
+            moves=[on.move(traveller, edge, stop) for _, traveller, edge, stop in moves],
+            complete=math.inf not in ends,
+            cut_off=frozenset(k for k, end in enumerate(ends) if math.isnan(end)),
+        )
 
     def journeys(self, travellers: Sequence[Traveller], *, ways: int, places: Sequence[Point] = ()) -> JointJourneys:
         """How each gets through all its stops among the others; so many ways are sought to improve the first ones.
@@ -152,21 +159,25 @@ class RoadmapPlan:
         places += [
             place for who in travellers if who.fixed for k in set(layer.values()) for place in self._around(who, k)
         ]
-        if self._known is None or not self._known.number.keys() >= set(places):
-            roadmap = with_places(self.roadmap, self.spaces, places)
-            if self._closed:
-                radii_m = roadmap.radii_m[roadmap.edge_layer]
-                roadmap = roadmap.keeping(self.doors.open_ways(roadmap.points[roadmap.edges], self._closed, radii_m))
-            self._known = Network.of(roadmap)
-        return self._known
+        base, closed, known = self.roadmap, self._closed, self._known
+        if known is not None and known[:2] == (base, closed) and known[2].number.keys() >= set(places):
+            return known[2]
+        roadmap = with_places(base, self.spaces, places)
+        if closed:
+            radii_m = roadmap.radii_m[roadmap.edge_layer]
+            roadmap = roadmap.keeping(self.doors.open_ways(roadmap.points[roadmap.edges], closed, radii_m))
+        made = Network.of(roadmap)
+        self._known = base, closed, made
+        return made
 
     def _admit(self, travellers: Sequence[Traveller]) -> None:
         """Make layers for robots of other sizes than there were."""
-        known = {*self.roadmap.radii_m.tolist(), *self._more_m}
-        fresh = {who.robot.radius_m for who in travellers} - known
-        if fresh and self.for_more is not None:
-            self._more_m += sorted(fresh)
-            self.roadmap, self._known = self.for_more(self._more_m), None
+        with self._admitting:
+            known = {*self.roadmap.radii_m.tolist(), *self._more_m}
+            fresh = {who.robot.radius_m for who in travellers} - known
+            if fresh and self.for_more is not None:
+                self._more_m += sorted(fresh)
+                self.roadmap = self.for_more(self._more_m)
 
     def _around(self, who: Traveller, layer: int) -> Iterator[Standing]:
         """Places by which others, of a layer, get round a robot that never leaves, where there is room."""
@@ -188,7 +199,18 @@ class RoadmapPlan:
         edges = on.edges_by_layer
         many = sum(edges[on.standing(who, who.start).layer] for who in travellers) > _MOST_BY_INTERVALS
         more = 0 if many else each * len(told)
-        return core.SharedWays(on.intervals, told, order=first, ways=more, seed=self.seed, at_once=many)
+        budget = self.budget if self._priorities else UNLIMITED
+        most = {} if budget.expansions is None else {"most_expansions": budget.expansions}
+        return core.SharedWays(
+            on.intervals,
+            told,
+            order=first,
+            ways=more,
+            seed=self.seed,
+            at_once=many,
+            most_seconds=budget.seconds,
+            **most,
+        )
 
 
 def _to_first_stop(who: Traveller) -> Traveller:

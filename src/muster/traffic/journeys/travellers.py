@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -64,18 +64,27 @@ class Move(NamedTuple):
     speed_mps: float = math.inf
 
 
+class PlannedMoves(NamedTuple):
+    """The moves of all travellers, in an order in which each is free while the others stand.
+
+    Parameters
+    ----------
+    moves : Sequence[Move]
+        Moves through all stops of each traveller, or to its first stop at least.
+    complete : bool
+        False where a traveller that is not cut off found no way to a stop. The moves then lead as near to the stops as
+        was found, and the moves of a later incomplete plan may lead back.
+    cut_off : frozenset[int]
+        Numbers of the travellers that those who never leave let to none of their stops.
+    """
+
+    moves: Sequence[Move] = ()
+    complete: bool = True
+    cut_off: frozenset[int] = frozenset()
+
+
 class Planner(Protocol):
-    """Plans moves of travellers, in an order in which each is free while the others stand."""
-
-    @property
-    def cut_off(self) -> Collection[int]:
-        """The travellers of the last plan, by number, that those who never leave let to none of their stops."""
-        ...
-
-    @property
-    def stepwise(self) -> bool:
-        """Whether the last moves were planned step by step, without whole ways: made anew they may lead back."""
-        ...
+    """A planner of moves for all travellers."""
 
     def close(self, doors: Collection[str]) -> None:
         """From now on these doors are closed, and the others open."""
@@ -89,10 +98,6 @@ class Planner(Protocol):
         """To which places a traveller gets past those who never leave; not where it is proven that it has no way."""
         ...
 
-    def __call__(self, travellers: Sequence[Traveller]) -> Iterable[Move]:
-        """Moves, as far as they are found."""
-        ...
-
-    def whole(self, travellers: Sequence[Traveller]) -> Iterable[Move] | None:
-        """Moves along whole ways to all first stops at least; None where some find no way."""
+    def __call__(self, travellers: Sequence[Traveller]) -> PlannedMoves:
+        """Return moves of all travellers, as far as they are found."""
         ...

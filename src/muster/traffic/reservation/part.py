@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 
 from muster.mission.model import Robot
@@ -18,6 +18,34 @@ _AWAY_M = 1e7
 """A robot that was taken away is so far from all others, and from any other like it."""
 
 
+@dataclass(frozen=True)
+class Aim:
+    """Where a robot goes by a plan.
+
+    Parameters
+    ----------
+    goal : Point or None
+        The first stop, metres; None: it may be anywhere.
+    arrives : bool
+        Whether it has something to do at its goal.
+    stop : int
+        Number of the goal among all its stops, those of earlier plans included.
+    ahead : tuple of Point
+        Stops after the goal.
+    more : bool
+        Whether it has more stops than were planned.
+    stays : bool
+        Whether it stays at the last stop for good.
+    """
+
+    goal: Point | None = None
+    arrives: bool = False
+    stop: int = 0
+    ahead: tuple[Point, ...] = ()
+    more: bool = False
+    stays: bool = False
+
+
 @dataclass
 class Part:
     """A robot in traffic, and what of it is planned."""
@@ -29,12 +57,7 @@ class Part:
     moves_passed: int = 0  # ends of moves, by the orders before the last
     sent_s: float = -math.inf  # when it was last sent on
     ends: int = 0  # how many of the places of the last order are ends of moves
-    goal: Point | None = None  # by the last plan
-    arrives: bool = False  # whether it has something to do there, by the last plan
-    stop: int = 0  # the number of its goal among its stops
-    ahead: list[Point] = field(default_factory=list)  # stops after its goal, by the last plan
-    more: bool = False  # whether it has more than were planned
-    stays: bool = False  # whether it stays at the last of them for good
+    aim: Aim = Aim()  # by the last plan
     done_s: float = math.inf  # when it was first seen to have nothing more to do at its goal
     no_way_s: float = math.inf  # since when it has no way to its goal
     to_go: bool = False  # whether it has been let go further than where it is
@@ -83,6 +106,14 @@ class Part:
     def pieces_ahead(self) -> Iterator[tuple[Point, Point]]:
         """The straight pieces of the way that it was last sent, from where it is; after a stop of that before."""
         return pairwise([self.near, *map(planar, self.port.sent_ahead)])
+
+    @property
+    def goal(self) -> Point | None:
+        """Where it is to go or to stay now; None: where it has nothing to do it may be anywhere."""
+        goal = self.port.goal
+        if goal is None or not (self.port.arrives or self.outlook.visits or self.outlook.stays):
+            return None
+        return planar(goal)
 
     @property
     def near(self) -> Point:

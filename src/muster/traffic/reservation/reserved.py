@@ -8,9 +8,8 @@ it, and when one stands that should go.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
-from copy import copy
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,23 +18,21 @@ from muster.mission.model import Robot
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.outlook import Outlook
 from muster.motion.port import Place, RobotPort, Waypoint, planar
-from muster.traffic.journeys.travellers import Move, Planner, Point, Stop, Traveller
+from muster.traffic.journeys.travellers import PlannedMoves, Planner, Stop, Traveller
 from muster.traffic.names import drives
 from muster.traffic.reservation.managed_port import ManagedPort
 from muster.traffic.reservation.part import Part
+from muster.traffic.reservation.plan_request import AT_GOAL_M, LEAST_STOPS, MOVED_M, PlanRequest
+from muster.traffic.reservation.planning import DelayedPlanning, Planning
 from muster.traffic.roadmaps.roadmap import MARGIN_M
 
 AHEAD_M = 2.0
 """For how many metres a robot may have begun moves, which a new plan does not change."""
 PLAN_EVERY_S = 1.0
 """The least time between two plans where nobody has a new goal."""
-STEPS_FOR_S = 10.0
-"""So long at most robots go on by moves that were planned step by step, as long as there are any and no plan of whole
-ways is found: other steps may send them back."""
-STOPS_PLANNED = 120
-"""Stops of all robots to which moves are planned, but `LEAST_STOPS` of each; anew where one has fewer than half of
-these left."""
-LEAST_STOPS = 4
+INCOMPLETE_FOR_S = 10.0
+"""The greatest time for which an incomplete plan holds, as long as robots have moves of it left and no complete plan is
+found."""
 NOTICE_S = 0.5
 """A robot that has done what it was to do is told within this time where to go next."""
 NO_PROGRESS_S = 5.0
@@ -54,9 +51,7 @@ of these times. Behind another robot it is sent on by at least the distance, or 
 after that time: each order may make its navigation plan anew."""
 AHEAD_S = 4.0
 """For how many seconds of driving a real robot may have begun moves, if that is farther than `AHEAD_M`."""
-_MOVED_M = 0.05
 _NEVER_S = -math.inf
-_AT_GOAL_M = 1e-3
 
 
 @dataclass
@@ -75,6 +70,8 @@ class ReservedTraffic:
         for how many metres a robot may have begun moves, which a new plan does not change.
     sparing
         whether an order that only leads farther along the same way waits until the robot needs it.
+    planning
+        makes one plan at a time.
     """
 
     plan: Planner
@@ -83,12 +80,15 @@ class ReservedTraffic:
     lanes: Sequence[core.LimitedLane] = ()
     ahead_m: float = AHEAD_M
     sparing: bool = False
+    planning: Planning = field(default_factory=DelayedPlanning)
     _order: core.PassingOrder = field(init=False)
     _waiting: list[tuple[Robot, ManagedPort]] = field(default_factory=list)  # for their first telemetry
     _parts: list[Part] = field(default_factory=list)
     _planned_s: float = _NEVER_S  # what was planned does not hold any more
     _sought_s: float = -math.inf  # when a plan was last sought
     _travellers: list[Traveller] = field(default_factory=list)  # of the last plan
+    _last: PlannedMoves = PlannedMoves()
+    _request: PlanRequest | None = None  # for a plan that is being made
     _closed: frozenset[str] = frozenset()  # doors
     _outlook: Callable[[str], Outlook] = field(default=lambda robot: Outlook(stays=True))
 
@@ -111,7 +111,7 @@ class ReservedTraffic:
         """See `TrafficManager`. Robots that were let go through one that closes are stopped."""
         self.plan.close(doors)
         self._closed = frozenset(doors)
-        self._planned_s = _NEVER_S
+        self._forget_plan()
         for part in self._parts:
             radius_m = part.robot.radius_m
             if not all(self.plan.is_open(np.array(piece), radius_m) for piece in part.pieces_ahead()):
@@ -145,10 +145,12 @@ class ReservedTraffic:
             self._order.progress(part.number, part.moves_passed + min(part.port.marks_passed, part.ends), part.near)
             self._lead_on(part, now)
         self._watch(now)
-        if self._plan_is_due(now):
-            self._plan_anew(now, self.plan)
-        elif now - self._sought_s >= PLAN_EVERY_S and self._on_steps(now):
-            self._plan_anew(now, self.plan.whole)
+        self._take_plan(now)
+        if self._request is None and self._plan_is_due(now):
+            self._ask_for_plan(now)
+        elif self._request is None and now - self._sought_s >= PLAN_EVERY_S and self._keeps_to_incomplete(now):
+            self._ask_for_plan(now, only_complete=True)
+        self._take_plan(now)
         for part in self._parts:
             self._let_go(part, now)
             self._refuse_what_no_way_leads_to(part, now)
@@ -164,7 +166,7 @@ class ReservedTraffic:
             place = planar(said.position)
             number = self._order.add(place, robot.radius_m)
             self._parts.append(Part(robot, port, number, stood=place, moved_s=now))
-            self._planned_s = _NEVER_S
+            self._forget_plan()
         self._waiting = silent
 
     def _watch(self, now: float) -> None:
@@ -172,7 +174,7 @@ class ReservedTraffic:
         for part in self._parts:
             if (part.gone, part.removed) != (part.outlook.gone, part.outlook.removed):
                 self._let_out_or_in(part, now)
-            moved = math.dist(part.near, part.stood) > _MOVED_M
+            moved = math.dist(part.near, part.stood) > MOVED_M
             if moved or part.port.orders != part.orders:
                 part.tried, part.orders = 0, part.port.orders
                 if part.broken:
@@ -206,116 +208,78 @@ class ReservedTraffic:
 
     def _forget_way(self, part: Part) -> None:
         """The robot stands where it is, as far as the order goes, and a new plan is due."""
-        self._order.cut()
+        self._forget_plan()
         self._order.stop(part.number, part.near)
-        self._planned_s = _NEVER_S
+
+    def _forget_plan(self) -> None:
+        """Let all robots go no further than they have been let go, until there is a new plan."""
+        self._request, self._planned_s = None, _NEVER_S
+        self._order.cut()
 
     def _lead_on(self, part: Part, now: float) -> None:
         """A robot that goes where it was planned to go next, or has done all, goes on along the moves that it has."""
-        goal, arrives = self._goal(part), part.port.arrives
-        to_next = arrives and goal != part.goal and part.ahead[:1] == [goal] and not self.plan.stepwise
-        to_rest = goal is None and part.goal is not None and not part.ahead and not part.stays
+        goal, arrives, aim = part.goal, part.port.arrives, part.aim
+        to_next = arrives and goal != aim.goal and aim.ahead[:1] == (goal,) and self._last.complete
+        to_rest = goal is None and aim.goal is not None and not aim.ahead and not aim.stays
         if to_next or to_rest:
-            part.goal, part.arrives, part.ahead = goal, arrives, part.ahead[1:]
-            part.stop += 1
-            self._order.lead(part.number, part.stop)
-        done = part.arrives and not arrives and goal == part.goal
+            part.aim = replace(aim, goal=goal, arrives=arrives, ahead=aim.ahead[1:], stop=aim.stop + 1)
+            self._order.lead(part.number, part.aim.stop)
+        done = part.aim.arrives and not arrives and goal == part.aim.goal
         part.done_s = min(part.done_s, now) if done else math.inf
 
     def _plan_is_due(self, now: float) -> bool:
         if self._planned_s == _NEVER_S or any(self._goes_elsewhere(part, now) for part in self._parts):
             return True
-        if now - self._planned_s < PLAN_EVERY_S or self._on_steps(now):
+        if now - self._planned_s < PLAN_EVERY_S or self._keeps_to_incomplete(now):
             return False
         return any(
-            self._falls_short(part) or (part.more and len(part.ahead) < LEAST_STOPS // 2) for part in self._parts
+            self._falls_short(part) or (part.aim.more and len(part.aim.ahead) < LEAST_STOPS // 2)
+            for part in self._parts
         )
 
-    def _on_steps(self, now: float) -> bool:
-        """Whether robots go on by moves that were planned step by step."""
-        if not self.plan.stepwise or now - self._planned_s >= STEPS_FOR_S:
+    def _keeps_to_incomplete(self, now: float) -> bool:
+        """Return whether the last plan is incomplete and robots still go on by its moves."""
+        if self._last.complete or now - self._planned_s >= INCOMPLETE_FOR_S:
             return False
-        return any(self._order.metres_left(part.number) > _MOVED_M for part in self._parts if not part.fixed)
+        return any(self._order.metres_left(part.number) > MOVED_M for part in self._parts if not part.fixed)
 
     def _goes_elsewhere(self, part: Part, now: float) -> bool:
         """Whether a robot has been sent elsewhere than was planned; one that has done its work is told soon."""
-        goal, arrives = self._goal(part), part.port.arrives
-        if (goal, arrives) == (part.goal, part.arrives):
+        goal, arrives = part.goal, part.port.arrives
+        if (goal, arrives) == (part.aim.goal, part.aim.arrives):
             return False
-        if goal != part.goal or arrives:
+        if goal != part.aim.goal or arrives:
             return True
-        last = part.stays and not part.ahead
+        last = part.aim.stays and not part.aim.ahead
         return not last and now - part.done_s >= NOTICE_S
 
     def _falls_short(self, part: Part) -> bool:
         """Whether the moves of a robot end before its goal, and it is coming near to where they end."""
-        away = self._away_m(part) > _AT_GOAL_M
+        away = self._away_m(part) > AT_GOAL_M
         return away and not part.fixed and self._order.metres_left(part.number) < 2 * self.ahead_m
 
-    def _goal(self, part: Part) -> Point | None:
-        """Where a robot is to go or to stay; None: where it has nothing to do it may be anywhere."""
-        goal = part.port.goal
-        if goal is None or not (part.port.arrives or part.outlook.visits or part.outlook.stays):
-            return None
-        return planar(goal)
-
-    def _plan_anew(self, now: float, plan: Callable[[Sequence[Traveller]], Iterable[Move] | None]) -> None:
-        """Moves after those that have begun; where none are found all goes on as it was planned before."""
+    def _ask_for_plan(self, now: float, *, only_complete: bool = False) -> None:
+        """Begin to plan what follows the moves that may begin meanwhile; `only_complete`: drop an incomplete plan."""
         self._sought_s = now
-        before = copy(self._order), [copy(part) for part in self._parts]
-        self._order.drop_ahead()
-        travellers = []
-        for part in self._parts:
-            part.goal, part.arrives, part.done_s = self._goal(part), part.port.arrives, math.inf
-            self._find_again(part)
-            travellers.append(self._traveller(part))
-        travellers += [Traveller(part.robot, at, fixed=True) for part in self._parts for at in part.may_be_at]
-        moves = plan(travellers)
-        if moves is None:
-            self._order, self._parts = before
+        request = PlanRequest.of(self._parts, self._order, self.ahead_m, self.planning.takes_s, only_complete)
+        self._request = request
+        self.planning.begin(lambda: request.planned(self.plan), now)
+
+    def _take_plan(self, now: float) -> None:
+        """Let robots go on by the plan that was asked for, where it is there."""
+        found = None if self._request is None else self.planning.result(now)
+        if self._request is None or found is None:
             return
-        self._planned_s, self.plans, self._travellers = now, self.plans + 1, travellers
-        stopped = set[int]()
-        for traveller, to, stop, speed_mps in moves:
-            part = self._parts[traveller]
-            if traveller not in stopped and not self._order.append(part.number, to, part.stop + stop, speed_mps):
-                stopped.add(traveller)
-
-    def _find_again(self, part: Part) -> None:
-        """A robot that is to go on stands where it is now said to be: first words may err, and robots are pushed."""
-        to_go_on = part.goal is None or self._away_m(part) > _AT_GOAL_M
-        if to_go_on and not part.port.busy and math.dist(self._order.end(part.number), part.near) > _MOVED_M:
-            self._order.stands(part.number, part.near)
-
-    def _traveller(self, part: Part) -> Traveller:
-        stops = self._stops(part)
-        part.ahead = [stop.at for stop in stops[1:]]
-        said, busy = part.port.heard, part.port.busy
-        ready_s = stops[0].hold_s if busy else 0.0
-        return Traveller(
-            robot=part.robot,
-            start=self._order.end(part.number),
-            stops=(Stop(stops[0].at), *stops[1:]) if busy else tuple(stops),
-            heading_rad=0.0 if said is None else said.heading,
-            ready_s=ready_s,
-            stays=part.stays,
-            fixed=part.fixed,
-        )
-
-    def _stops(self, part: Part) -> Sequence[Stop]:
-        """Where a robot goes now and then, as far as it is planned; what it does at one place is one stop."""
-        if part.goal is None or not part.arrives:
-            part.more, part.stays = False, part.goal is not None
-            return [] if part.goal is None else [Stop(part.goal)]
-        stops = list[Stop]()
-        for place, hold_s in (*part.port.visits, *part.outlook.visits):
-            at = planar(place)
-            before = stops.pop().hold_s if stops and stops[-1].at == at else 0.0
-            stops.append(Stop(at, before + hold_s))
-        most = max(LEAST_STOPS, STOPS_PLANNED // len(self._parts))
-        part.more = len(stops) > most
-        part.stays = part.outlook.stays and not part.more
-        return stops[:most]
+        request, self._request = self._request, None
+        if request.only_complete and not found.complete:
+            self._order.release()
+            return
+        self._order.adopt(request.order)
+        self._planned_s, self.plans, self._travellers, self._last = now, self.plans + 1, request.travellers, found
+        for part, aim in zip(self._parts, request.aims, strict=True):
+            part.aim, part.done_s = aim, math.inf
+            self._order.lead(part.number, aim.stop)
+            self._lead_on(part, now)  # it may have been sent on meanwhile
 
     def _let_go(self, part: Part, now: float) -> None:
         """Send a robot as far as it may go."""
@@ -323,12 +287,16 @@ class ReservedTraffic:
             part.port.waits_for, part.to_go = "", False
             return
         grant = self._order.grant(part.number)
-        part.to_go = grant.metres > _MOVED_M
-        left_m, away_m = self._order.metres_left(part.number), self._away_m(part)
-        if left_m > 0 or away_m <= _AT_GOAL_M or part.port.left_m is None:  # without a way it has come no nearer
-            part.port.left_m = left_m + away_m
+        part.to_go = grant.metres > MOVED_M
+        left_m, away_m, is_planned = (
+            self._order.metres_left(part.number),
+            self._away_m(part),
+            part.goal == part.aim.goal,
+        )
+        if is_planned and (left_m > 0 or away_m <= AT_GOAL_M or part.port.left_m is None):
+            part.port.left_m = left_m + away_m  # without a way it has come no nearer
         part.port.waits_for = self._held_up_by(part, grant)
-        to_goal = grant.last and part.port.arrives and self._away_m(part) <= _AT_GOAL_M
+        to_goal = is_planned and grant.last and part.port.arrives and away_m <= AT_GOAL_M
         part.to_go = part.to_go or to_goal
         if grant.points or to_goal:
             said = part.port.heard
@@ -359,8 +327,14 @@ class ReservedTraffic:
 
     def _refuse_what_no_way_leads_to(self, part: Part, now: float) -> None:
         """Lanes may lead to no goal, or never back from one; what lies behind a closed door is not given up here."""
-        goal = part.goal
-        if goal is None or self._closed or not self._falls_short(part) or self._order.metres_left(part.number) > 0.0:
+        goal = part.aim.goal
+        if (
+            goal is None
+            or goal != part.goal
+            or self._closed
+            or not self._falls_short(part)
+            or self._order.metres_left(part.number) > 0.0
+        ):
             part.no_way_s = math.inf
             return
         part.no_way_s = min(part.no_way_s, now)
@@ -372,7 +346,8 @@ class ReservedTraffic:
 
     def _away_m(self, part: Part) -> float:
         """Metres from where the moves of a robot end to its goal; 0 without one."""
-        return 0.0 if part.goal is None else math.dist(self._order.stand(part.number), part.goal)
+        goal = part.aim.goal
+        return 0.0 if goal is None else math.dist(self._order.stand(part.number), goal)
 
     def _held_up_by(self, part: Part, grant: core.Grant) -> str:
         """The robot that comes first, or stands next to one that has found no way; empty where nobody holds it up."""
@@ -380,10 +355,12 @@ class ReservedTraffic:
             return ""
         if grant.waits_for >= 0:
             return self._parts[grant.waits_for].robot.id
-        return self._nearest(part) if self._falls_short(part) and not grant.points else ""
+        if self._request is not None:  # whether it has found no way shows when the plan is there
+            return part.port.waits_for
+        return self._nearest(part) if self._falls_short(part) else ""
 
     def _nearest(self, part: Part) -> str:
         """The robot next to one that has found no way; one that others have to get round, where such cut it off."""
-        others, cut_off = [other for other in self._parts if other is not part], part.number in self.plan.cut_off
+        others, cut_off = [other for other in self._parts if other is not part], part.number in self._last.cut_off
         found = min(others, key=lambda one: (one.fixed != cut_off, math.dist(one.near, part.near)), default=None)
         return "" if found is None else found.robot.id
