@@ -84,7 +84,12 @@ PLANTED = {  # which seed finds the fault, or one soon after it, and what it is:
     ),
     "who begins need not have said so": (15, "negotiators.owned_tasks", "return said and sum", "return sum"),
     "who has forgotten counts": (102, "negotiators.participant", "Memory(knows=not self.forgot)", "Memory(knows=True)"),
-    "a clock that was set back is not noticed": (0, "membership.identity", "if not self.may_renumber or", "if True or"),
+    "a clock that was set back is not noticed": (
+        0,
+        "negotiators.participant",
+        "if self._identity.renumber_above(heartbeat) or",
+        "if False and",
+    ),
     "what is waived stays closed": (77, "knowledge.facts", 'fact.kind == "waived"}', 'fact.kind == ""}'),
 }
 

@@ -94,12 +94,51 @@ def heartbeats_of_r_1(net, *heartbeats):
     return Message("r_1", 1, 10**6, net.nodes["r_1"].stage, heartbeats=heartbeats)
 
 
-def test_a_robot_that_the_others_have_accepted_falls_silent_when_it_hears_of_a_later_process():
-    net = settled_team(line_mission())
+def test_a_robot_that_the_others_have_accepted_refutes_a_later_start_that_it_has_not_made_a_few_times():
+    net = settled_team(line_mission(), loss=0.1)
+    for robot in ("r_0", "r_2"):
+        heard = heartbeats_of_r_1(net, Heartbeat("r_1", 1, 10**6), Heartbeat("r_0", 7, 1))
+        net._send(robot, net.nodes[robot].handle(heard, net.now))
     node = net.nodes["r_0"]
-    node.handle(heartbeats_of_r_1(net, Heartbeat("r_1", 1, 10**6), Heartbeat("r_0", 7, 1)), net.now)
+    assert (node.superseded, node.incarnation) == (False, 8)
+    agree(net)
+    assert len(owners(net)) == 6
+    assert all(len(robots) == 1 for robots in owners(net).values())
+    for number in (20, 30, 40):
+        assert not node.superseded
+        node.handle(heartbeats_of_r_1(net, Heartbeat("r_1", 1, 10**7 + number), Heartbeat("r_0", number, 1)), net.now)
     assert node.superseded
-    assert node.incarnation == 1
+
+
+@pytest.mark.parametrize("robot", ["r_0", "r_2"])
+def test_a_start_in_a_thousand_years_is_not_believed(robot):
+    net = settled_team(line_mission())
+    node = net.nodes[robot]
+    node.handle(heartbeats_of_r_1(net, Heartbeat("r_1", 1, 10**6), Heartbeat("r_0", 2**53, 1)), net.now)
+    assert (node.superseded, node.incarnation) == (False, 1)
+    assert net.nodes["r_2"].members.incarnation("r_0") == 1
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_of_two_processes_that_do_not_hear_each_other_the_later_one_keeps_the_name(seed):
+    net = settled_team(line_mission(), seed=seed, loss=0.2 * (seed % 2))
+    first = net.nodes["r_0"]
+    net.start(["r_0"], incarnation=3)
+    second = net.nodes["r_0"]
+    for _ in range(200):  # what the first one says reaches the others, and what they say both
+        net.nodes["r_0"] = second
+        net.run(net.now + 0.05)
+        for robot in ("r_1", "r_2"):
+            other = net.nodes[robot]
+            for said in first.tick(net.now):
+                net._send(robot, other.handle(said.message, net.now))
+            for said in other.tick(net.now):
+                net._send("r_0", second.handle(said.message, net.now))
+                first.handle(said.message, net.now)
+    assert first.superseded
+    assert not second.superseded
+    agree(net)
+    assert all(len(robots) == 1 for robots in owners(net).values())
 
 
 def test_a_robot_that_some_have_accepted_rises_when_another_tells_that_the_later_process_is_silent():

@@ -100,7 +100,7 @@ PLANTED = {  # what the core does wrong: module, right, wrong, and bounds within
     ),
     "an operator is not answered": (
         "negotiators.negotiator",
-        "set(base.routes) == set(self.rules.robots)",
+        "self.rules.robots.keys() - self.revoked <= base.routes.keys()",
         "len(base.routes) > len(self.rules.robots)",
         Bounds(quanta=1, orders=1),
         "is not answered",

@@ -38,6 +38,7 @@ from muster_team.knowledge.rules import Rules
 from muster_team.knowledge.signatures import NO_KEYS, Signatures
 from muster_team.knowledge.verdicts import Refused
 from muster_team.membership.convictions import Convictions
+from muster_team.membership.identity import LEAP as LATER
 from muster_team.membership.identity import Identity
 from muster_team.membership.members import Members, Timeouts
 from muster_team.membership.peer_progress import PeerProgress
@@ -278,7 +279,7 @@ class Participant:
         if message.sender == self.robot:
             self._identity.may_renumber = False  # another process of this name lives
         if message.sender == self.robot or not self.members.accepts(message):
-            self._hear_of(message.heartbeat, now)
+            self._hear_of(message.heartbeat, now, relayed=False)
             return False
         if self.members.hear_from(message, now):
             self._note_restart(message.sender)
@@ -317,18 +318,22 @@ class Participant:
         told = self._message(None, heartbeats=(correction,), births=self._births([correction]))
         return [Outgoing(told, message.sender)]
 
-    def _hear_of(self, heartbeat: Heartbeat, now: float) -> None:
+    def _hear_of(self, heartbeat: Heartbeat, now: float, *, relayed: bool = True) -> None:
         """Note that a robot was alive. For this robot's own id it may be another process, or an earlier incarnation.
 
-        Where robots have keys, a later start counts only with its proof.
+        Where robots have keys, a later start counts only with its proof. Where they have none this robot refutes a
+        later start of its own that others tell of.
         """
-        if self.signatures.has_keys and not self.members.is_born(heartbeat):
+        is_mine, by_key = heartbeat.robot == self.robot, self.signatures.has_keys
+        known = self.incarnation if is_mine else self.members.incarnation(heartbeat.robot)
+        if (by_key and not self.members.is_born(heartbeat)) or heartbeat.incarnation > max(known, 0) + LATER:
             return
-        if heartbeat.robot == self.robot:
+        if is_mine:
             self._identity.may_renumber |= heartbeat.number == 0  # a correction: no rival lives
-            if self._identity.renumber_above(heartbeat):
+            is_hearsay, before_s = relayed and not by_key, now - self.timeouts.suspect_s
+            if self._identity.renumber_above(heartbeat) or (is_hearsay and self._identity.refute(heartbeat, now)):
                 self._renumber()
-            elif self._identity.hear(heartbeat):
+            elif self._identity.gives_way(heartbeat, before_s) or self._identity.hear(heartbeat):
                 self.notices.tell("rival", [self.robot])
         elif self.members.hear(heartbeat, now):
             self._note_restart(heartbeat.robot)

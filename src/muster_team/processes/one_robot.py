@@ -83,7 +83,7 @@ def new_incarnation(before: int = 0) -> int:
 
 
 def _check_name(status: NodeStatus, negotiator: Negotiator) -> None:
-    if any(rival > negotiator.incarnation for rival in status.rivals):
+    if status.superseded and status.rivals:
         raise NetworkError(
             f"{status.robot}: another process has started under this name; expected one for each robot, this one ends"
         )

@@ -1,10 +1,13 @@
-"""Operators on both sides of cuts give orders at the same time: all robots take the same ones, and each is answered."""
+"""Operators on both sides of cuts give orders at the same time: all robots take the same ones, and each is answered.
+
+Some revoke the key of a robot besides: all others go on without it, and it falls silent.
+"""
 
 from dataclasses import replace
 from functools import partial
 from random import Random
 
-from tests.muster_team.byzantine.trial import keys_of
+from tests.muster_team.byzantine.trial import keys_of, secret
 from tests.muster_team.networks import line_mission
 from tests.muster_team.trials.random_missions import random_mission, with_times
 from tests.trials import Report
@@ -13,9 +16,11 @@ from muster import Task
 from muster.allocation.auctions.auction import Parameters
 from muster.mission.errors import MissionError, ParameterError
 from muster.model.problem import Problem
+from muster_team.knowledge.messages import AUTHORITY
 from muster_team.knowledge.orders import orders_among
 from muster_team.negotiators.participation import negotiator_of
 from muster_team.network.memory_network import LinkConditions, MemoryNetwork
+from muster_team.network.robot_keys import revocation
 
 
 def orders_trial(seed):
@@ -40,10 +45,16 @@ def orders_trial(seed):
         net.start()
         net.run(3.0)
         given = _give_orders(net, robots, random, report)
+        out = _revoke(net, random) if random.random() < 0.3 else ""
         net.heal()
-        agreed = net.run(net.now + 90.0, lambda: _agree(net))
+        nodes = [node for robot, node in net.nodes.items() if robot != out]
+        agreed = net.run(net.now + 90.0, lambda: _agree(nodes))
         report.check(agreed, "the robots do not agree")
-        _look(net, given, report)
+        report.check(all(node.revoked == ({out} if out else set()) for node in nodes), "another key was revoked")
+        silent = not out or net.run(net.now + 10.0, lambda: net.nodes[out].superseded)
+        report.check(silent, f"{out}, whose key was revoked, goes on")
+        report.counts["revoked"] += bool(out)
+        _look(nodes, {fact: robot for fact, robot in given.items() if robot != out}, report)
     return report
 
 
@@ -70,6 +81,14 @@ def _give_orders(net, robots, random, report):
     return given
 
 
+def _revoke(net, random):
+    """An operator revokes the key of a robot, at another one; the robot whose key it was."""
+    out, told = random.sample(list(net.nodes), 2)
+    net.nodes[told].revoke(revocation(out, secret(AUTHORITY), b"a mission"))
+    net.run(net.now + random.choice((0.0, 0.03, 1.0, 6.0)))
+    return out
+
+
 def _order(node, k, random):
     tasks = [*node.rules.tasks, *(fact.task for fact in node.orders.taken if fact.kind == "added")]
     place = (random.uniform(0, 100), random.uniform(0, 10))
@@ -94,8 +113,7 @@ def _order(node, k, random):
     node.announce(Task(id=name, position=place, **keys))
 
 
-def _look(net, given, report):
-    nodes = list(net.nodes.values())
+def _look(nodes, given, report):
     verdicts = [node.orders.verdicts for node in nodes]
     report.check(all(found == verdicts[0] for found in verdicts), "robots see orders differently")
     for fact in given:
@@ -109,7 +127,7 @@ def _look(net, given, report):
     report.check(all(other == routes[0] for other in routes), "views differ")
 
 
-def _agree(net):
-    nodes = list(net.nodes.values())
-    together = all(node.settled and set(node.epoch.own.members) == set(net.nodes) for node in nodes)
+def _agree(nodes):
+    robots = {node.robot for node in nodes}
+    together = all(node.settled and set(node.epoch.own.members) == robots for node in nodes)
     return together and len({node.stage for node in nodes}) == 1 and len({node.known for node in nodes}) == 1

@@ -116,7 +116,7 @@ def test_an_earlier_process_of_a_name_falls_silent_and_a_later_one_goes_on():
     agree(net)
     second = net.nodes["r_0"]
     net.sent = lambda message: message.sender == "r_1" and first.handle(message, net.now)
-    net.run(net.now + 2.0)  # in which r_1 tells of the later process
+    net.run(net.now + 8.0)  # in which r_1 tells of the later process, which nobody hears the first one refute
     assert first.superseded
     assert first.route == ()
     assert first.tick(net.now + 9.0) == []
