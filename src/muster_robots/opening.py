@@ -27,33 +27,13 @@ def open_ros1(mission: Mission, settings: Ros1Settings, halt: threading.Event, a
 
 
 def open_ros2(mission: Mission, settings: Ros2Settings, halt: threading.Event, again: bool) -> Opened:
-    return _heard(ros2_fleet(mission, settings), settings.wait_s, halt, NEEDED[settings.give], some=again), _nothing
+    from muster_robots.ros2.fleet import Ros2Fleet
+
+    return _heard(Ros2Fleet(mission, settings), settings.wait_s, halt, NEEDED[settings.give], some=again), _nothing
 
 
 NEEDED = {"goals": "its pose", "nav2": "its pose, and Nav2"}
 """What robots on ROS 2 must have said before a mission begins, by how goals are sent."""
-
-
-def ros2_fleet(mission: Mission, settings: Ros2Settings, **more: Any) -> Any:
-    """Return the fleet of robots on ROS 2, before anything is heard of them."""
-    from muster_robots.ros2.fleet import Ros2Fleet
-    from muster_robots.ros2.open_middleware import open_middleware
-    from muster_robots.ros2.port import Arrival
-
-    return Ros2Fleet(
-        mission,
-        middleware=open_middleware(settings.by, settings.domain),
-        give=settings.give,
-        namespace=settings.namespace,
-        arrival=Arrival(near_m=settings.arrival_m),
-        frame=settings.frame,
-        odometry=settings.odometry,
-        poses=settings.poses,
-        use_sim_time=settings.use_sim_time,
-        joins=not settings.known_only,
-        custody=settings,
-        **more,
-    )
 
 
 def open_mavlink(mission: Mission, settings: MavlinkSettings, halt: threading.Event, again: bool) -> Opened:

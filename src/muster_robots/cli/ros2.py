@@ -33,13 +33,14 @@ def command(mission: MissionFile, targets: TargetOptions | None, options: RealRu
     from muster.running.claim_locks import robots_claimed
     from muster.running.live import wait_for_robots
     from muster.running.robot_claims import claims_of_request
-    from muster_robots.opening import NEEDED, ros2_fleet
+    from muster_robots.opening import NEEDED
+    from muster_robots.ros2.fleet import Ros2Fleet
 
     require_outputs(options, mission.files)
     loaded = mission.load(verbose=options.verbose)
     given, settings, how = read_given_plan(options, loaded), options.request.settings, going_on(options, loaded)
     with ctrl_c_halts(TO_END) as halt, robots_claimed(claims_of_request(options.request)):
-        fleet = ros2_fleet(loaded, settings, targets=None if targets is None else targets.settings())
+        fleet = Ros2Fleet(loaded, settings, targets=None if targets is None else targets.settings())
         with closing(fleet):
             wait_for_robots(fleet, halt, settings.wait_s, NEEDED[settings.give], some=how.again)
             return carried_out_from_here(fleet, given, how, options, halt)

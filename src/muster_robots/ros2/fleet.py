@@ -12,18 +12,18 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from muster.mission.errors import NetworkError
 from muster.mission.model import Event, Mission, Robot
 from muster.mission.system.clock import Clock, SystemClock
 from muster.perception.robot_grids import RobotGrid
-from muster_robots.custody_settings import CustodySettings
 from muster_robots.discovery import pose_topics, topics_in
+from muster_robots.fleet_settings import Ros2Settings
 from muster_robots.pose_custody import failures
 from muster_robots.ros2.goals import Goals, Nav2Goals, PoseGoals
 from muster_robots.ros2.joining import Ros2Newcomers
-from muster_robots.ros2.map_frame import MAP_FRAME, Ros2MapFrame
+from muster_robots.ros2.map_frame import Ros2MapFrame
 from muster_robots.ros2.message_types import PoseStamped
 from muster_robots.ros2.middleware import Middleware
 from muster_robots.ros2.names import ros_names
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from muster_robots.ros2.target_localization import Ros2TargetLocalization
     from muster_robots.target_search import SearchSettings
 
-Give = Literal["goals", "nav2"]
 _POLL_S = 0.02
 _LAST_WORDS_S = 0.2
 """That what was said last takes to arrive."""
@@ -52,28 +51,14 @@ class Ros2Fleet:
     ----------
     mission
         robot `r_0` is at `/r_0/pose` or `/r_0/odom`.
+    settings
+        how they are reached, given goals and kept; those of `muster run --fleet ros2` without it.
     middleware
-        by which they are reached, closed with the fleet; None: as `open_middleware()` does.
-    give
-        `goals`: poses on a topic; `nav2`: Nav2's action.
-    namespace
-        in which the robots' own are; "" for the root.
-    arrival
-        when a way point is reached.
-    frame
-        the mission's frame, in tf's words.
-    odometry
-        `map`: tf ties it to the map; `start`: it begins at the robot's start in the mission.
-    poses
-        topic of a robot's pose, with `{robot}` for its name, where others publish it; empty: `<robot>/pose`.
-    use_sim_time
-        whether the mission goes by /clock.
+        by which they are reached, closed with the fleet; None: as the settings say.
     targets
         how tags that robots' cameras see are found; None: cameras are not heard.
-    joins
-        whether robots that the mission does not name may join.
-    custody
-        how long robots may be silent, in trouble or in other hands.
+    clock
+        by which the mission goes; None: as the settings say.
 
     Raises
     ------
@@ -84,36 +69,32 @@ class Ros2Fleet:
     def __init__(
         self,
         mission: Mission,
+        settings: Ros2Settings | None = None,
         *,
         middleware: Middleware | None = None,
-        give: Give = "goals",
-        namespace: str = "",
-        arrival: Arrival | None = None,
-        frame: str = MAP_FRAME,
-        odometry: Literal["map", "start"] = "map",
-        poses: str = "",
-        use_sim_time: bool = False,
         targets: SearchSettings | None = None,
-        joins: bool = True,
-        custody: CustodySettings | None = None,
         clock: Clock | None = None,
     ) -> None:
-        self._namespace, self._topics, self._pose_topic = namespace, topics_in(namespace), pose_topics(poses)
-        self._give, self._arrival = give, arrival or Arrival()
-        kept = custody or CustodySettings()
-        self.limits, self._custody_limits = kept.limits, kept.custody_limits
+        how = settings or Ros2Settings()
+        self._namespace, self._topics, self._pose_topic = (
+            how.namespace,
+            topics_in(how.namespace),
+            pose_topics(how.poses),
+        )
+        self._give, self._arrival = how.give, Arrival(near_m=how.arrival_m)
+        self.limits, self._custody_limits = how.limits, how.custody_limits
         self._flat = mission.dimensions == 2
-        self._middleware = open_middleware() if middleware is None else middleware
-        self._simulator = SimulatorClock(self._middleware) if use_sim_time else None
+        self._middleware = open_middleware(how.by, how.domain) if middleware is None else middleware
+        self._simulator = SimulatorClock(self._middleware) if how.use_sim_time else None
         self._clock: Clock = clock or self._simulator or SystemClock()
-        self.simulated_time = clock is not None or use_sim_time
+        self.simulated_time = clock is not None or how.use_sim_time
         self._begin = self._clock.now()
-        self._frames = Ros2MapFrame(self._middleware, frame)
+        self._frames = Ros2MapFrame(self._middleware, how.frame)
         self._ports: dict[str, Ros2Port] = {}
         try:
             names = ros_names(robot.id for robot in mission.robots)
             for robot in mission.robots:
-                if odometry == "start":
+                if how.odometry == "start":
                     self._frames.fix(start_frame(self._topics(names[robot.id])), start_pose(robot))
                 self._ports[robot.id] = self._reached(robot, names[robot.id])
             self._targets = None if targets is None else self._searched(mission, names, targets)
@@ -121,7 +102,7 @@ class Ros2Fleet:
             self._middleware.close()
             raise
         self._names, self._maps, self._hears_maps = names, Ros2Maps(self._middleware, self._frames), False
-        self._newcomers = self._looks(names) if joins else None
+        self._newcomers = None if how.known_only else self._looks(names)
 
     @property
     def ports(self) -> Mapping[str, Ros2Port]:

@@ -10,7 +10,7 @@ from tests.muster_robots.ros2.fake_middleware import Middleware, Navigator, pose
 import muster
 from muster.mission.model import Mission, Robot, Task
 from muster.motion.port import Waypoint
-from muster_robots.custody_settings import CustodySettings
+from muster_robots.fleet_settings import Ros2Settings
 from muster_robots.navigation import Outcome
 from muster_robots.ros2.fleet import Ros2Fleet
 from muster_robots.ros2.simulated_participant import SimulatedRobot
@@ -40,9 +40,8 @@ class There:
     def __init__(self, give, **settings):
         self.wire = Wire()
         robots = (Robot(id="r", position=(0.0, 0.0)),)
-        custody = CustodySettings(**settings)
-        how = {"middleware": self.wire, "clock": self.wire, "give": give, "custody": custody, "joins": False}
-        self.fleet = Ros2Fleet(Mission(robots=robots, tasks=()), **how)
+        how = Ros2Settings(give=give, known_only=True, **settings)
+        self.fleet = Ros2Fleet(Mission(robots=robots, tasks=()), how, middleware=self.wire, clock=self.wire)
         self.port = self.fleet.ports["r"]
         self.pass_by(3.0, 0.0)
 
@@ -213,7 +212,7 @@ def carried_out(**faults):
     tasks = tuple(Task(id=f"t_{k}", position=(8.0 + 4 * (k // 2), 4.0 * (k % 2))) for k in range(4))
     there, bus, events = Mission(robots=robots, tasks=tasks), Bus(), []
     bus.robots += [Mortal(robots[0], bus, **faults), Mortal(robots[1], bus)]
-    fleet = Ros2Fleet(there, middleware=bus.participant(moves=True), clock=bus.clock, joins=False)
+    fleet = Ros2Fleet(there, Ros2Settings(known_only=True), middleware=bus.participant(moves=True), clock=bus.clock)
     while fleet.robots_not_ready():
         fleet.advance(fleet.time_s + 0.1)
     plan = muster.solve(there, "greedy")

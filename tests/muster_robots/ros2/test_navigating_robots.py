@@ -13,10 +13,10 @@ from muster.motion.port import Waypoint
 pytest.importorskip("cyclonedds")
 
 from muster_robots.fleet_settings import Ros2Settings
-from muster_robots.opening import ros2_fleet
 from muster_robots.ros2.action_message_types import GetResultReply, words_of
 from muster_robots.ros2.dds import DdsMiddleware
 from muster_robots.ros2.dds_endpoints import Endpoint
+from muster_robots.ros2.fleet import Ros2Fleet
 
 pytestmark = pytest.mark.usefixtures("loopback")
 MISSION = """
@@ -59,7 +59,7 @@ def fleet_of():
 
     def of(**settings):
         there = Mission(robots=(Robot(id="r_0", position=(0.0, 0.0)),), tasks=())
-        made.append(ros2_fleet(there, Ros2Settings(by="dds", known_only=True, **settings)))
+        made.append(Ros2Fleet(there, Ros2Settings(by="dds", known_only=True, **settings)))
         until(made[-1], lambda: not made[-1].robots_not_ready())
         return made[-1]
 
@@ -202,7 +202,7 @@ def test_a_server_on_another_make_of_dds_is_named_and_not_called(robot, monkeypa
     robot("r_0", 0, 0, "nav2=jazzy", "tf")
     monkeypatch.setattr(Endpoint, "is_cyclone", property(lambda self: False))
     there = Mission(robots=(Robot(id="r_0", position=(0.0, 0.0)),), tasks=())
-    fleet = ros2_fleet(there, Ros2Settings(by="dds", profile="nav2"))
+    fleet = Ros2Fleet(there, Ros2Settings(by="dds", profile="nav2"))
     until(fleet, lambda: "another make" in fleet.robots_not_ready().get("r_0", ""))
     said = fleet.robots_not_ready()["r_0"]
     assert said.endswith("expected RMW_IMPLEMENTATION=rmw_cyclonedds_cpp on the robot, or --by rclpy")

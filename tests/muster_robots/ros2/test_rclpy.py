@@ -11,6 +11,7 @@ from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan, Route
 from muster.motion.port import Waypoint
 from muster.running.live import carry_out_live
+from muster_robots.fleet_settings import Ros2Settings
 from muster_robots.ros2.description import from_foreign, to_foreign
 from muster_robots.ros2.fleet import Ros2Fleet
 from muster_robots.ros2.message_types import MESSAGES, Odometry, Path, Point, Pose, PoseStamped, String
@@ -29,8 +30,8 @@ def mission(*ids, tasks=((2.0, 0.0), (2.0, 1.5))):
     return Mission(robots=robots, tasks=tuple(Task(id=f"t_{k}", position=at) for k, at in enumerate(tasks)))
 
 
-def navigated(there, **how):
-    fleet = Ros2Fleet(there, middleware=RclpyMiddleware(), give="nav2", **how)
+def navigated(there):
+    fleet = Ros2Fleet(there, Ros2Settings(give="nav2"), middleware=RclpyMiddleware())
     until(fleet, lambda: not fleet.robots_not_ready())
     return fleet
 
@@ -178,14 +179,16 @@ def test_what_is_given_up_once_is_tried_again(graph):
     assert not fleet.ports["r_0"].telemetry().refused
 
 
-def test_a_goal_that_somebody_else_cancels_is_refused_at_once(graph):
+def test_a_robot_whose_goal_somebody_else_cancels_takes_no_part_and_its_task_is_not_refused(graph):
     nav2 = fake_rclpy.Nav2(graph, "r_0", (0.0, 0.0), script=["hang"])
     fleet = navigated(mission("r_0"))
     fleet.ports["r_0"].send([Waypoint((1.0, 0.0, 0.0))])
     fleet.advance(fleet.time_s + 0.1)
     nav2._under_way.cancel_asked = True
-    until(fleet, lambda: fleet.ports["r_0"].telemetry().refused)
-    assert fleet.ports["r_0"].telemetry().refused == "navigate_to_pose: canceled by somebody else"
+    until(fleet, lambda: fleet.ports["r_0"].telemetry().suspended)
+    said = fleet.ports["r_0"].telemetry()
+    assert said.suspended == "another station: navigate_to_pose: canceled by somebody else"
+    assert not said.refused
     assert len(nav2.goals) == 1
 
 
@@ -262,7 +265,7 @@ def test_one_that_says_what_is_wrong_does_not_join(graph, caplog):
 
 def test_in_a_namespace_it_is_found_and_named_there(graph, caplog):
     fake_rclpy.Nav2(graph, "team/r_0", (0.0, 0.0))
-    fleet = Ros2Fleet(mission("r_0"), middleware=RclpyMiddleware(), namespace="/team/")
+    fleet = Ros2Fleet(mission("r_0"), Ros2Settings(namespace="/team/"), middleware=RclpyMiddleware())
     until(fleet, lambda: not fleet.robots_not_ready())
     fake_rclpy.Nav2(graph, "team/r_7", (4.0, 5.0))
     words = RclpyMiddleware().writer("/team/r_7/muster", String)
@@ -274,7 +277,7 @@ def test_in_a_namespace_it_is_found_and_named_there(graph, caplog):
 
 
 def test_known_only_nobody_joins(graph):
-    fleet = Ros2Fleet(mission("r_0"), middleware=RclpyMiddleware(), joins=False)
+    fleet = Ros2Fleet(mission("r_0"), Ros2Settings(known_only=True), middleware=RclpyMiddleware())
     fake_rclpy.Nav2(graph, "r_7", (4.0, 5.0))
     assert fleet.advance(fleet.time_s + 1.0) == []
 
@@ -282,7 +285,7 @@ def test_known_only_nobody_joins(graph):
 def test_what_is_missing_is_one_line(graph, monkeypatch):
     monkeypatch.setitem(sys.modules, "nav2_msgs.action", None)
     with pytest.raises(MissingExtraError, match="install nav2_msgs"):
-        Ros2Fleet(mission("r_0"), middleware=RclpyMiddleware(), give="nav2")
+        Ros2Fleet(mission("r_0"), Ros2Settings(give="nav2"), middleware=RclpyMiddleware())
     assert not graph.contexts[0].up
     monkeypatch.setitem(sys.modules, "rclpy.node", None)
     with pytest.raises(MissingExtraError, match=r"source the setup file .*, or use DDS") as caught:

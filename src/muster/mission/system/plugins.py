@@ -10,7 +10,7 @@ import logging
 import sys
 from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import cache, cached_property
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint, distribution, entry_points
 from typing import Any, Generic, TypeVar
 
 from muster.mission.errors import MusterError, ParameterError, PluginError
@@ -29,9 +29,13 @@ _installed = cache(lambda path: entry_points())
 """Entry points of all packages on a path; reading them takes longer than anything else that a lookup does."""
 
 
+_own = cache(lambda path: frozenset(distribution(DISTRIBUTION).entry_points))
+"""Entry points of this distribution: to ask each entry point for its package reads the metadata of that every time."""
+
+
 def is_shipped(entry: EntryPoint) -> bool:
     """Whether an entry point is one of this distribution."""
-    return entry.dist is not None and entry.dist.name == DISTRIBUTION
+    return entry in _own(tuple(sys.path))
 
 
 class Registry(Mapping[str, T], Generic[T]):
