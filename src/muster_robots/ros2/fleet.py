@@ -76,11 +76,8 @@ class Ros2Fleet:
         clock: Clock | None = None,
     ) -> None:
         how = settings or Ros2Settings()
-        self._namespace, self._topics, self._pose_topic = (
-            how.namespace,
-            topics_in(how.namespace),
-            pose_topics(how.poses),
-        )
+        self._namespace, self._topics = how.namespace, topics_in(how.namespace)
+        self._pose_topic = pose_topics(how.poses)
         self._give, self._arrival = how.give, Arrival(near_m=how.arrival_m)
         self.limits, self._custody_limits = how.limits, how.custody_limits
         self._flat = mission.dimensions == 2
