@@ -22,7 +22,12 @@ T = TypeVar("T")
 
 def declared(group: str) -> tuple[EntryPoint, ...]:
     """The entry points of a group: first those of this distribution, in the order of `pyproject.toml`."""
-    return tuple(sorted(_installed(tuple(sys.path)).select(group=group), key=lambda entry: not is_shipped(entry)))
+    return _declared(group, tuple(sys.path))
+
+
+@cache
+def _declared(group: str, path: tuple[str, ...]) -> tuple[EntryPoint, ...]:
+    return tuple(sorted(_installed(path).select(group=group), key=lambda entry: not is_shipped(entry)))
 
 
 _installed = cache(lambda path: entry_points())
