@@ -21,6 +21,12 @@ def package(folder, name, entries, code=""):
     (folder / f"{name.replace('-', '_')}.py").write_text(code)
 
 
+def forget():
+    """Let what is installed be read again."""
+    for known in (plugins._declared, plugins._installed, plugins._own):
+        known.cache_clear()
+
+
 @pytest.fixture
 def things(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
@@ -28,11 +34,11 @@ def things(tmp_path, monkeypatch):
 
     def registry(**shipped):
         package(tmp_path, "muster-own", [f"{name} = {place}" for name, place in shipped.items()])
-        plugins._installed.cache_clear()
+        forget()
         return Registry("thing", "muster.things", checked)
 
     yield registry
-    plugins._installed.cache_clear()
+    forget()
     for name in ("muster_one", "muster_two"):
         sys.modules.pop(name, None)
 
