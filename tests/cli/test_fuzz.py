@@ -213,7 +213,7 @@ def edges(mission):
 # --- missions --------------------------------------------------------------------------------------------------------
 
 
-@examples(40)
+@examples(75)
 @given(mission=st.one_of(tiny_missions(tabled=False), missions()))
 def test_valid_missions(folder, mission):
     path = folder / "mission.yaml"
@@ -221,7 +221,7 @@ def test_valid_missions(folder, mission):
     survives(folder, path)
 
 
-@examples(40)
+@examples(100)
 @given(text=st.one_of(st.sampled_from(SHIPPED), tiny_missions(tabled=False).map(yaml_text)), some=changes)
 def test_changed_text(folder, text, some):
     path = folder / "mission.yaml"
@@ -229,7 +229,7 @@ def test_changed_text(folder, text, some):
     survives(folder, path)
 
 
-@examples(40)
+@examples(100)
 @given(
     mission=st.one_of(tiny_missions(tabled=False), missions()),
     some=st.lists(st.tuples(share, st.sampled_from(EXTREMES)), min_size=1, max_size=3),
@@ -293,7 +293,7 @@ ROBOTS = "id,type,x,y,work_capacity\nr_0,beta,0,0,50\nr_1,tau,2,0,inf\n"
 TABLE = "robot_type,D,E\nbeta,0.9,0.7\ntau,0.5,0.9\n"
 
 
-@examples(40)
+@examples(50)
 @given(which=st.integers(0, 2), some=changes)
 def test_changed_csv(folder, which, some):
     texts = [TASKS.encode(), ROBOTS.encode(), TABLE.encode()]
@@ -382,7 +382,7 @@ def solved(folder):
     return mission, muster("solve", mission, "--iterations", 5, "--format", "json")[1]
 
 
-@examples(40)
+@examples(60)
 @given(some=changes)
 def test_changed_plan_text(folder, solved, some):
     mission, text = solved
@@ -391,7 +391,7 @@ def test_changed_plan_text(folder, solved, some):
     judged(folder, mission, plan)
 
 
-@examples(40)
+@examples(60)
 @given(some=st.lists(st.tuples(share, st.sampled_from(EXTREMES)), min_size=1, max_size=3))
 def test_changed_plan_values(folder, solved, some):
     mission, text = solved
@@ -407,7 +407,7 @@ def test_changed_plan_values(folder, solved, some):
 ids = st.sampled_from([str(k) for k in range(11)]) | plain_words
 
 
-@examples(40)
+@examples(50)
 @given(
     routes=st.lists(
         st.builds(Route, st.sampled_from(["r_0", "r_1", "R0", "R1", "r_9"]), st.lists(ids, max_size=6).map(tuple)),

@@ -163,10 +163,11 @@ def test_the_form_of_missions_has_a_column_for_it(run):
 
 
 @pytest.mark.parametrize(
-    ("first", "missions"), [(0, 3), *(pytest.param(first, 12, marks=pytest.mark.long) for first in (3, 15, 27))]
+    ("first", "missions", "more_than"),
+    [(0, 3, 0), *(pytest.param(first, 12, 10, marks=pytest.mark.long) for first in (0, 12, 24))],
 )
-def test_every_plan_of_small_missions_says_the_same(run, first, missions):
+def test_every_plan_of_small_missions_says_the_same(run, first, missions, more_than):
     told = json.loads(run("-m", "tests.examples.max_tasks_trials", first, missions).stdout)
     assert told["failures"] == {}
-    assert told["counts"]["reason max-tasks"] > 0
-    assert told["counts"]["remedies: a plan was found"] > 0
+    assert told["counts"]["reason max-tasks"] > more_than
+    assert told["counts"]["remedies: a plan was found"] > more_than

@@ -15,10 +15,11 @@ from muster_studies.unknown.scenes import random_space, random_world
 @pytest.mark.parametrize(
     "mission", [random_world(1), random_space(1), load("market-rescue-arena")], ids=lambda m: m.name
 )
-def test_a_map_comes_back_as_it_was(mission):
+@pytest.mark.parametrize("seconds", [3.0, pytest.param(12.0, marks=pytest.mark.long)])
+def test_a_map_comes_back_as_it_was(mission, seconds):
     run = Simulation(mission, solve(mission, "greedy"), unknown=True)
-    while not run.done and run.time_s < 3.0:
-        run.advance(3.0)
+    while not run.done and run.time_s < seconds:
+        run.advance(seconds)
     was = run._ground.map
     again = TeamMap(checked_world(mission), mission)
     again.resume(json.loads(json.dumps(was.snapshot())))

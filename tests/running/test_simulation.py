@@ -195,10 +195,11 @@ def test_one_that_returns_before_it_is_available_waits_until_then():
     assert report.starts_s["there"] == pytest.approx(17, abs=0.5)
 
 
-def test_depot_is_carried_out_as_planned_and_whole_whatever_happens():
+@pytest.mark.parametrize("iterations", [300, pytest.param(2000, marks=pytest.mark.long)])
+def test_depot_is_carried_out_as_planned_and_whole_whatever_happens(iterations):
     """All actions over a map in space, several robots at once; then with a robot that fails and a task that appears."""
     mission = muster.load("depot")
-    plan = muster.solve(mission, iterations=300)
+    plan = muster.solve(mission, iterations=iterations)
     assert plan.complete
     calm = carry_out(replace(mission, events=()), plan)
     assert (set(calm.tasks_done), calm.contacts, calm.reallocations) == ({t.id for t in mission.tasks}, 0, 0)

@@ -24,8 +24,9 @@ def test_all_get_through(scene, kinematics):
     assert (report.contacts, report.tasks_lost) == (0, ())
 
 
-def test_it_is_the_same_again():
-    mission = scenes.aisles("holonomic", 1, 2)
+@pytest.mark.parametrize("scene", [(1, 2), pytest.param((2, 3), marks=pytest.mark.long)], ids=str)
+def test_it_is_the_same_again(scene):
+    mission = scenes.aisles("holonomic", *scene)
     plan = solve(mission, "greedy")
     times = []
     for _ in range(2):

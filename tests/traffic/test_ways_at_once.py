@@ -145,7 +145,7 @@ def test_points_nearer_than_robots_are_wide():
     assert max(judged(roadmap, [one, other], [[other], [one]])[0]) < math.inf
 
 
-@settings(max_examples=15)
+@settings(max_examples=60)
 @given(seed=st.integers(0, 10**6), settle=st.booleans())
 def test_ways_are_found_where_a_joint_search_finds_some(seed, settle):
     random = np.random.default_rng(seed)

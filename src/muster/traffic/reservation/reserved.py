@@ -288,11 +288,8 @@ class ReservedTraffic:
             return
         grant = self._order.grant(part.number)
         part.to_go = grant.metres > MOVED_M
-        left_m, away_m, is_planned = (
-            self._order.metres_left(part.number),
-            self._away_m(part),
-            part.goal == part.aim.goal,
-        )
+        left_m, away_m = self._order.metres_left(part.number), self._away_m(part)
+        is_planned = part.goal == part.aim.goal
         if is_planned and (left_m > 0 or away_m <= AT_GOAL_M or part.port.left_m is None):
             part.port.left_m = left_m + away_m  # without a way it has come no nearer
         part.port.waits_for = self._held_up_by(part, grant)
