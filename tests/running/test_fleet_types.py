@@ -95,7 +95,7 @@ def test_robots_that_do_not_hold_pass_as_they_meet_and_are_not_paused(acme):
     narrow = replace(PLAIN, lanes=LANES)
     for world, managed in (("acme", False), ("(an open fleet)", True)):
         live = Live(narrow, muster.solve(narrow, "greedy"), WorldAsFleet(narrow), RunRequest(world=world))
-        for _ in range(10):  # traffic is planned in a thread, for two seconds of the mission at most
+        while live.time_s < 2.5:  # traffic is planned in a thread, for two seconds of the mission at most
             live.look()
             live.hear(live.time_s + 0.3)
         assert live.executor.crew["r_0"].steered == managed
