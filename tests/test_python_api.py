@@ -103,6 +103,7 @@ def test_notebooks_show_tables_with_escaped_texts(mission, plan, report):
     assert "no-such-task" in broken._repr_html_()
 
 
+@pytest.mark.long
 def test_notebooks_show_pictures_of_figures_that_pyplot_does_not_know(mission, plan):
     for axes in (muster.plot(mission, plan), muster.gantt(mission, plan)):
         assert axes._repr_png_().startswith(b"\x89PNG")

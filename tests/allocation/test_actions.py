@@ -67,7 +67,7 @@ def test_who_may_do_what_is_what_the_judge_says(seed, over_map):
             assert problem.refusal(i, j) == (None if reason is None else ("skill", reason))
 
 
-@pytest.mark.long(keep=6)
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize(("seed", "over_map"), CASES)
 def test_plans_are_admissible(seed, over_map):
     """By each of four allocators, over a map and without."""
@@ -82,6 +82,7 @@ def test_plans_are_admissible(seed, over_map):
     assert plan.routes
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("over_map", [False, True])
 def test_there_is_something_to_test(over_map):
     """Of each action some robot does one, some robots cannot, and over the map some are blocked."""
@@ -124,7 +125,7 @@ def test_a_part_costs_what_it_costs_in_the_whole(over_map):
             )
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("over_map", [False, True])
 def test_a_team_with_actions_can_be_divided(over_map):
     mission = random_mission(2, tasks=28, over_map=over_map, spatial=False)
@@ -244,6 +245,7 @@ def test_the_smallest_change_is_never_at_a_robot_that_cannot():
     assert smallest_as_is(Problem.compile(alone), [[]], 0, judge) is None
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("seed", range(4))
 def test_bounds_hold_with_actions(seed):
     """The best of a long search is never below what is proven."""

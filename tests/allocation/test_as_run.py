@@ -26,6 +26,7 @@ def p_values(allocator: str, values: np.ndarray) -> tuple[float, float]:
     return stats.mannwhitneyu(values, A_15[allocator]).pvalue, stats.ks_2samp(values, A_15[allocator]).pvalue
 
 
+@pytest.mark.long
 def test_from_the_greedy_plan_hill_climbing_ends_at_the_published_values():
     found = set(np.round(runs("greedy+hill-climbing-as-run", 16, 30_000), 2))
     assert len(found & set(A_15["greedy+hill-climbing"])) >= 3

@@ -37,7 +37,7 @@ def mission_by(seed, tables, *, tasks):
     return with_travel_tables(mission, seed) if tables else mission
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("placement", PLACEMENTS)
 @every_winner
 @given(seed=seeds, tables=st.booleans(), bid=st.sampled_from((*BIDS, None)), weights=st.fixed_dictionaries(weights))
@@ -70,6 +70,7 @@ def sale(rows, winner):
     return min(sales)[1:]
 
 
+@pytest.mark.long(keep=1)
 @both_auctions
 @every_winner
 @given(seed=seeds, tables=st.booleans(), terms=other_terms, ignore=ignored)
@@ -104,7 +105,7 @@ STOPS = {
 }
 
 
-@pytest.mark.long(keep=3)
+@pytest.mark.long(keep=2)
 @both_auctions
 @pytest.mark.parametrize("end", STOPS)
 @given(seed=seeds, k=st.integers(0, 50), terms=other_terms, winner=st.sampled_from(WINNERS), begun=st.booleans())

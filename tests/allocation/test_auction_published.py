@@ -147,6 +147,7 @@ def test_market_gives_figure_5(seed):
     assert {r.robot: sorted(r.tasks) for r in plan.routes} == {r: sorted(route["tasks"]) for r, route in there.items()}
 
 
+@pytest.mark.long
 def test_market_comes_near_the_best_known_plan_of_20_survivors():
     mission = muster.load("market-rescue-20")
     seconds = []
@@ -176,6 +177,7 @@ def case(*values):
     return pytest.param(*values, marks=pytest.mark.long if values[-1] in WITH_MAPS else ())
 
 
+@pytest.mark.long(keep=9)
 @pytest.mark.parametrize(("number", "name"), [case(*numbered) for numbered in enumerate(SHIPPED)])
 def test_auctions_of_every_kind_are_admissible(number, name):
     """Three kinds for each mission: of any eight missions, every kind there is."""
@@ -185,6 +187,7 @@ def test_auctions_of_every_kind_are_admissible(number, name):
         admissible(problem, "auction", Stop(), bid=bid, placement=placement, winner=winner)
 
 
+@pytest.mark.long(keep=14)
 @pytest.mark.parametrize("name", [case(name) for name in SHIPPED])
 def test_markets_are_admissible_or_refused(name):
     problem = Problem.compile(muster.load(name))

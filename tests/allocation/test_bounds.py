@@ -54,7 +54,7 @@ def by_table(seed):
     )
 
 
-@pytest.mark.long(keep=4)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("make", [forgiving, by_table])
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_no_plan_that_does_every_task_is_below_the_bound(make, objective):
@@ -161,6 +161,7 @@ def test_paths_tell_nearly_all_of_what_clusters_far_apart_cost():
     assert 0.95 * best < least_arrivals_on_paths(problem, problem.allowed, 0.0) / 12 <= best * (1 + ROUNDING)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_a_bound_that_was_cut_short_holds_and_says_so(objective):
     problem = Problem.compile(muster.load("31T-6R50"), objective)
@@ -223,6 +224,7 @@ def test_robots_with_tasks_at_hand_need_not_go_far_away():
     assert best_bound(problem).value <= 110 * (1 + ROUNDING)
 
 
+@pytest.mark.long
 def test_every_argument_says_why_it_holds():
     seen = set()
     for name in ("6T-2R", "31T-6R50"):
@@ -276,7 +278,7 @@ def test_farthest_task_bounds_the_greatest_usage():
     assert bound.arguments == ("the farthest task",)
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(
     ("name", "best_known", "gap"),
     [("31T-6R", 213.5616, 0.17), ("16T-3R", 342.9002, 0.11), ("24T-5R", 189.2523, 0.14), ("eil51-5", 629.9602, 0.11)],

@@ -29,7 +29,7 @@ def roomy_mission(seed):
     return replace(mission, rules=rules, tasks=tasks, robots=robots)
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long
 @pytest.mark.parametrize("first", range(0, SEEDS, EACH))
 def test_no_plan_that_does_one_of_each_is_below_the_bound(first, monkeypatch):
     complete, above = 0, 0

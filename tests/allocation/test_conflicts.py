@@ -208,6 +208,7 @@ def test_what_is_said_of_crowded_missions_is_true(seed, robots):
     holds(crowded(seed, robots=robots))
 
 
+@pytest.mark.long
 def test_little_is_unknown():
     found = [holds(crowded(seed)) for seed in range(40)]
     conflicts = [one.conflict for one in found if one.conflict is not None]

@@ -90,6 +90,7 @@ def test_with_one_task_each_the_outcome_is_the_sequential_greedy_one(topology, s
     assert routes_of(Problem.compile(mission), plan) == sequential_greedy(mission, 1)
 
 
+@pytest.mark.long
 def test_with_bundles_it_is_so_too_but_for_exceptions():
     """Mission 10: a robot that took another task for one that seemed lost keeps it when that comes free."""
     missions = [papers_mission(seed, tasks=10, robots=5) for seed in range(40)]
@@ -101,6 +102,7 @@ def test_with_bundles_it_is_so_too_but_for_exceptions():
     assert others == [10]
 
 
+@pytest.mark.long
 @given(seed=seeds, robots=st.integers(1, 8))
 def test_agreement_takes_at_most_tasks_times_diameter_rounds(seed, robots):
     mission = papers_mission(seed, robots=robots)

@@ -38,21 +38,21 @@ def assert_exact(problem, **more):
     assert result.lower_bound <= value * (1 + 1e-12)
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_it_finds_the_best_of_all_plans(objective):
     for seed in range(8):
         assert_exact(Problem.compile(random_mission(seed, tasks=5, robots=2), objective))
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_it_finds_the_best_where_travel_is_by_table(objective):
     for seed in range(5):
         assert_exact(Problem.compile(by_table(seed), objective))
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_it_finds_the_best_where_most_tasks_can_be_done(objective):
     for seed in range(5):
@@ -89,7 +89,7 @@ def test_it_does_not_deadlock():
         assert_exact(Problem.compile(mission, objective))
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_bound_exact_search(objective):
     for seed in range(3):
@@ -186,6 +186,7 @@ def test_without_ortools_one_line_says_what_to_install(monkeypatch):
         solve_exactly(Problem.compile(muster.load("6T-2R")), 1.0, judge=admits)
 
 
+@pytest.mark.long
 def test_an_interrupted_proof_ends_with_what_is_proven():
     """Interrupted at once nothing but the quick bounds is known; interrupted under way, soon after it."""
     problem = Problem.compile(muster.load("24T-5R"))

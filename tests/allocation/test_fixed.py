@@ -74,7 +74,7 @@ def test_routes_begin_with_them_and_the_plan_is_admissible(allocator, seed):
     assert muster.verify(mission, plan).valid
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_it_finds_the_best_of_all_such_plans(objective):
     """The exact solver, the search and the bounds, against all plans."""
@@ -115,6 +115,7 @@ def test_they_change_what_is_best():
     assert muster.solve(mission, iterations=50, objective="total", fixed=fixed, bound="exact").lower_bound == 5
 
 
+@pytest.mark.long
 def test_they_stay_in_a_team_that_is_divided():
     mission = large_mission(900, 30)
     whole = muster.solve(mission, "greedy")

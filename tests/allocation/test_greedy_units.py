@@ -57,6 +57,7 @@ FAMILIES = {
 }
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_what_is_kept_from_step_to_step_changes_no_plan(family):
     problems = list(timed_problems(range(8), FAMILIES[family]))
@@ -65,7 +66,7 @@ def test_what_is_kept_from_step_to_step_changes_no_plan(family):
         assert greedy.completed(problem) == Reference(problem).routes(), (problem.mission.name, problem.objective)
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("objective", ["total", "total+max", "makespan", "lateness"])
 def test_a_run_that_is_not_thorough_plans_about_as_well(objective, monkeypatch):
     (mission,) = muster.generate("logistics", tasks=200, robots=10)

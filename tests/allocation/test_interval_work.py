@@ -37,7 +37,7 @@ def refuted(mission, found):
     return JudgedPlans(mission).find(lambda orders: len(names & set().union(*orders)) > most)
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long
 @pytest.mark.parametrize("first", range(0, SEEDS, EACH))
 def test_no_plan_refutes_a_shortage(first):
     proofs = 0
@@ -117,6 +117,7 @@ def test_breaks_and_duties_are_no_time_for_work():
 # --- changes ---------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_changes_lift_all_that_is_short_and_less_does_not():
     changed = 0
     for seed in range(3000, 3040):

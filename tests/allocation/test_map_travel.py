@@ -85,6 +85,7 @@ def assert_as_judged(mission, rel):
     return problem
 
 
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize("seed", range(6))
 def test_lengths_are_those_of_the_judge(seed):
     assert_as_judged(random_mission(seed), rel=1e-6)
@@ -148,6 +149,7 @@ def test_a_drone_does_not_pass_where_zones_touch(zones, radius):
     assert np.isinf(problem.legs(0, [problem.start(0)], [0])).all()
 
 
+@pytest.mark.long
 def test_in_two_rooms_lengths_are_those_of_the_judge():
     walls = (box(19, -1, 2, 42), box(5, 5, 5, 20), box(30, 10, 5, 25))
     arena = Map(boundary=((0, 0), (40, 0), (40, 40), (0, 40)), zones=walls)
@@ -160,11 +162,12 @@ def test_in_two_rooms_lengths_are_those_of_the_judge():
     assert muster.verify(mission, plan).valid
 
 
+@pytest.mark.long
 def test_on_the_shipped_floor_plan_they_are_those_of_the_judge():
     assert_as_judged(muster.load("floor"), rel=1e-6)
 
 
-@pytest.mark.long(keep=3)
+@pytest.mark.long
 @pytest.mark.parametrize(("seed", "allocator"), list(enumerate(2 * ["search", "greedy", "auction"])))
 def test_plans_are_admissible(seed, allocator):
     mission = random_mission(seed, spatial=seed in (0, 4))

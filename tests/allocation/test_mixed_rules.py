@@ -26,6 +26,7 @@ def case(name):
 # --- cycles of lags --------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_a_plan_ends_where_a_stop_at_a_station_makes_a_cycle_of_lags_impossible():
     command = [str(Path(sys.executable).with_name("muster")), "solve", str(CASES / "hang.yaml"), "--iterations", "50"]
     ended = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE_S, check=False)
@@ -168,6 +169,7 @@ def test_a_rule_that_another_robot_breaks_is_not_a_robots_own():
 # --- sums of work ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_work_that_is_more_than_all_shifts_is_said_first():
     found = muster.check(case("fifty"))
     (short,) = found.together.shortfalls

@@ -57,6 +57,7 @@ def test_the_best_choice_of_a_few_tasks_is_found(seed):
     assert plan.objective_value == pytest.approx(total)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(("seed", "robots", "limit", "best"), [(1, 2, 75.0, 1324), (2, 3, 60.0, 1287)])
 def test_a_hundred_tasks_are_chosen_from_nearly_as_well_as_in_a_long_run(seed, robots, limit, best):
     """`best` is what 300,000 steps come to; a search that never gives a task away reaches 95 % in 20,000."""

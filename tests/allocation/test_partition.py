@@ -16,6 +16,7 @@ from muster.generation.uniform import large_mission
 from muster.model.problem import Problem
 
 
+@pytest.mark.long
 @given(seed=st.integers(0, 10**6), parts=st.integers(2, 5))
 def test_plans_are_admissible_and_prerequisites_stay_together(seed, parts):
     mission = random_mission(seed, tasks=12, robots=5)
@@ -52,6 +53,7 @@ def test_more_divisions_help_and_the_plan_is_nearly_that_of_a_whole_search():
     assert parted.objective_value < 1.05 * whole.objective_value
 
 
+@pytest.mark.long
 def test_the_same_seed_and_iterations_give_the_same_plan():
     mission = large_mission(300, 12)
     first, second = (muster.solve(mission, "search", iterations=2_000, seed=5, parts=3) for _ in range(2))

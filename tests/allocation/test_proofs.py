@@ -60,6 +60,7 @@ def test_what_cannot_be_proven_is_refused():
         muster.solve(muster.load("eil51-5"), "greedy", bound="exact")
 
 
+@pytest.mark.long
 def test_why_a_bound_holds_or_is_missing():
     pytest.importorskip("ortools")
     problem = Problem.compile(muster.load("11T-2R"))

@@ -282,12 +282,14 @@ def check_all(asked):
 seeds = st.integers(0, 10**6)
 
 
+@pytest.mark.long
 @examples(25)
 @given(seed=seeds, tasks=st.integers(2, 5), robots=st.integers(2, 3))
 def test_what_is_said_of_random_missions_is_true(seed, tasks, robots):
     check_all(random_mission(seed, tasks=tasks, robots=robots))
 
 
+@pytest.mark.long
 @examples(5)
 @given(seed=seeds)
 def test_what_is_said_of_six_tasks_is_true(seed):
@@ -298,6 +300,7 @@ LATENESS = mission([robot(), robot("r_1")], [task("0", 0, 0), task("1", 0, 1)], 
 """Where no task is ever late, any place costs the same; the remedy names the one that takes least."""
 
 
+@pytest.mark.long
 @examples(50)
 @given(asked=tiny_missions(max_robots=2, max_tasks=4))
 @example(asked=LATENESS)
@@ -305,6 +308,7 @@ def test_what_is_said_of_tiny_missions_is_true(asked):
     check_all(asked)
 
 
+@pytest.mark.long
 def test_what_could_be_is_found():
     results = [one for seed in range(12) for one in check_all(crowded(seed, tasks=4))]
     possible = [enough for enough, least in results if least < math.inf]

@@ -17,6 +17,7 @@ from muster.generation.uniform import large_mission
 from muster.model.problem import Problem
 
 
+@pytest.mark.long
 @settings(max_examples=400)
 @given(
     seed=st.integers(0, 10**6),
@@ -56,6 +57,7 @@ def best_plan(problem):
     return best
 
 
+@pytest.mark.long
 @settings(max_examples=60)
 @given(seed=st.integers(0, 10**6), robots=st.integers(1, 2))
 def test_small_missions_are_solved_to_the_optimum(seed, robots):

@@ -12,6 +12,7 @@ pytest.importorskip("shapely", reason="needs the extra `map`")
 FIRST, CHUNK = 15, 20
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("first", [FIRST, pytest.param(FIRST + CHUNK, marks=pytest.mark.long)])
 def test_nothing_fails(first):
     failures = {seed: report.failures for seed in range(first, first + CHUNK) if (report := trial(seed)).failures}
@@ -26,6 +27,7 @@ def test_a_trial_that_goes_wrong_is_a_failure(monkeypatch):
     assert trial(small).failures == ["ZeroDivisionError: division by zero"]
 
 
+@pytest.mark.long
 def test_the_missions_have_every_rule():
     missions = [case(seed).mission for seed in range(200)]
     rules = [mission.rules for mission in missions]

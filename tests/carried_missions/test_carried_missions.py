@@ -16,6 +16,7 @@ CHUNK = 20
 DECIDED = (33, 68, 99, 127, 130, 136, 140, 349, 381, 90201)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("first", [*(pytest.param(k, marks=pytest.mark.long) for k in (0, CHUNK)), 2 * CHUNK])
 def test_routes_and_bounds_agree_with_every_plan(first):
     reports = [trial(seed, planned=False) for seed in range(first, first + CHUNK)]
@@ -29,7 +30,7 @@ def test_routes_that_were_wrong_once_agree_with_every_plan(seed):
     assert trial(seed, planned=False).failures == []
 
 
-@pytest.mark.long(keep=4)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", [*range(8), 662, 904])
 def test_no_plan_is_better_than_the_best(seed):
     report = trial(seed)
@@ -37,7 +38,7 @@ def test_no_plan_is_better_than_the_best(seed):
     assert report.counts["search misses the best"] == 0
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", [1, 5, 8, 13, 19])
 def test_the_exact_solver_proves_the_best(seed):
     pytest.importorskip("ortools", reason="needs the extra exact")

@@ -49,6 +49,7 @@ def test_forced_styles_in_files_and_pipes(muster, monkeypatch):
     assert muster("missions", "--format", "json")[1].startswith("[")  # programs have none all the same
 
 
+@pytest.mark.long
 def test_forced_styles_of_long_tables(muster, monkeypatch):
     found = ("docs", "--find", "muster")
     assert "\x1b" not in muster(*found)[1]

@@ -75,6 +75,7 @@ def test_fish_completes_by_the_function_that_it_registers(muster):
     assert sum(words.count(word) for word in ("function", "for", "if")) == words.count("end") + words.count("else")
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(
     ("shell", "words", "at", "first"),
     [

@@ -77,6 +77,7 @@ CASES = [
 ]
 
 
+@pytest.mark.long(keep=21)
 @pytest.mark.parametrize(
     ("arguments", "ending", "code"), CASES, ids=lambda value: " ".join(value) if isinstance(value, list) else None
 )
@@ -114,6 +115,7 @@ def begun(http, mission, plan, **settings):
     return http.post("/runs", json={"plan": uploaded.json()["id"], "speed": None, "settings": settings})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("plan", "settings", "status"),
     [("east.json", {}, 201), ("cut.json", {}, 409), ("cut.json", {"accept_partial": True}, 201)],
@@ -123,6 +125,7 @@ def test_the_api_begins_no_run_with_a_part(http, plan, settings, status):
     assert answered.status_code == status, answered.text
 
 
+@pytest.mark.long
 def test_a_run_through_a_closed_area_fails_before_it_begins(http):
     run_id = begun(http, "zone.yaml", "east.json").json()["id"]
     seen = after(http, f"/runs/{run_id}", "starting", "running")

@@ -213,6 +213,7 @@ def edges(mission):
 # --- missions --------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 @examples(75)
 @given(mission=st.one_of(tiny_missions(tabled=False), missions()))
 def test_valid_missions(folder, mission):
@@ -229,6 +230,7 @@ def test_changed_text(folder, text, some):
     survives(folder, path)
 
 
+@pytest.mark.long
 @examples(100)
 @given(
     mission=st.one_of(tiny_missions(tabled=False), missions()),
@@ -382,6 +384,7 @@ def solved(folder):
     return mission, muster("solve", mission, "--iterations", 5, "--format", "json")[1]
 
 
+@pytest.mark.long
 @examples(60)
 @given(some=changes)
 def test_changed_plan_text(folder, solved, some):
@@ -407,6 +410,7 @@ def test_changed_plan_values(folder, solved, some):
 ids = st.sampled_from([str(k) for k in range(11)]) | plain_words
 
 
+@pytest.mark.long
 @examples(50)
 @given(
     routes=st.lists(

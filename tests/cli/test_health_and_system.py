@@ -9,6 +9,7 @@ from muster.cli.verbs import system_facts
 from muster.mission.system.installation import Part, extras
 
 
+@pytest.mark.long
 def test_packages_that_fail_or_crash_are_told_each_by_itself(tmp_path, monkeypatch):
     (tmp_path / "fails_here.py").write_text("raise ValueError('no such device')")
     (tmp_path / "crashes_here.py").write_text("import os; os.abort()")

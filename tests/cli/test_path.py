@@ -252,6 +252,7 @@ def test_a_local_minimum_is_an_answer(muster, walled):
     assert out.startswith("no path: not found: a local minimum at (")
 
 
+@pytest.mark.long
 def test_a_robot_without_a_map_goes_by_its_laser(muster, tmp_path):
     file = tmp_path / "posts.yaml"
     file.write_text(

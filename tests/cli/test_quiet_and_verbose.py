@@ -74,6 +74,7 @@ def test_a_renamed_file_and_a_plan_that_names_no_mission(verb, plan, muster):
     assert muster(verb, "renamed.yaml", plan)[2] == ""
 
 
+@pytest.mark.long
 def test_verbose_says_why_a_bound_holds(muster):
     args = ("solve", "eil51-5", "--objective", "max", "--iterations", 20, "--bound")
     code, out, err = muster(*args, "-v")
@@ -83,6 +84,7 @@ def test_verbose_says_why_a_bound_holds(muster):
     assert muster(*args)[2] == ""
 
 
+@pytest.mark.long
 def test_a_bound_that_was_asked_for_and_is_not_there_is_no_surprise(muster):
     args = ("solve", "31T-3R44-3R26", "--allocator", "greedy", "--bound")
     code, out, err = muster(*args)

@@ -47,7 +47,7 @@ def answer(muster, *arguments):
     return json.loads(out)
 
 
-@pytest.mark.long(keep=3)
+@pytest.mark.long
 @pytest.mark.parametrize("name", [name for name in mission_names() if name not in ("eil51", "berlin52", "eil76")])
 def test_shipped_missions_are_carried_out(name):
     """Every planned task is done, once, no contact, and nothing starts before what it waits for has ended.
@@ -102,6 +102,7 @@ def test_for_people(muster):
     assert re.search(r"mission time +\d+\.\d\d s", out)
 
 
+@pytest.mark.long
 def test_a_plan_record_page_and_picture(muster, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert muster("solve", "16T-3R", "--iterations", "100", "-o", "plan.json", "-q")[0] == 0
@@ -119,6 +120,7 @@ def test_a_plan_record_page_and_picture(muster, tmp_path, monkeypatch):
     assert read_plan("plan.json").tasks_completed == 16
 
 
+@pytest.mark.long
 @pytest.mark.skipif(find_spec("mujoco") is None, reason="the extra `physics` is not installed")
 def test_a_film_and_a_still_of_the_physics_world(muster, tmp_path):
     film, still = tmp_path / "flown.gif", tmp_path / "end.png"
@@ -241,7 +243,7 @@ def is_written(muster, record, seconds):
     return code == 0 and json.loads(out)["duration_s"] >= seconds
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize(("written_s", "after_s"), [(0.0, 0.5), (1.0, 0.0)])
 def test_killed_at_any_moment_it_leaves_a_record_that_replays(muster, tmp_path, written_s, after_s):
     """The point of the record: what was carried out up to there can be looked at."""
@@ -277,6 +279,7 @@ def test_the_plan_of_another_mission_is_doubted(muster, tmp_path):
     assert "the judge rejects this plan: mission the plan is of 6T-2R; expected 11T-2R, or no name" in err
 
 
+@pytest.mark.long
 def test_ctrl_c_stops_the_mission_and_tells_how_far_it_came(muster, tmp_path):
     record, page = tmp_path / "r.mcap", tmp_path / "r.html"
     files = ["--record", str(record), "--html", str(page), "--iterations", "10"]
@@ -359,6 +362,7 @@ class TestNegotiate:
         assert said in err
 
 
+@pytest.mark.long
 def test_the_physics_world_without_its_extra_is_one_line():
     program = "import sys; sys.modules['mujoco'] = None; from muster.cli.__main__ import main; main()"
     command = [sys.executable, "-c", program, "simulate", "6T-2R", "--world", "physics", "--iterations", "10"]
@@ -370,6 +374,7 @@ def test_the_physics_world_without_its_extra_is_one_line():
     assert "Traceback" not in ran.stderr
 
 
+@pytest.mark.long
 def test_a_mission_is_carried_out_in_the_physics_world(muster):
     pytest.importorskip("muster_physics", reason="needs the extra `physics`", exc_type=ImportError)
     exact, physical = (answer(muster, "6T-2R", "--world", world) for world in ("kinematic", "physics"))
@@ -388,6 +393,7 @@ def test_what_cameras_found_is_told_and_drawn(muster, tmp_path):
     assert file.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not find_spec("mujoco"), reason="the extra `physics` is not installed")
 def test_what_cameras_saw_is_kept(muster, tmp_path):
     mission, folder = tmp_path / "m.yaml", tmp_path / "new" / "seen"

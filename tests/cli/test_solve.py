@@ -82,6 +82,7 @@ LIMITED = (
 )
 
 
+@pytest.mark.long
 def test_a_disk_that_is_full():
     """Of a file that fails in the middle the system names no file; the user must still get a line."""
     command = [sys.executable, "-c", LIMITED, MUSTER, "solve", "yard.yaml", "--iterations", "5", "-o", "plan.json"]
@@ -250,6 +251,7 @@ def test_start_that_does_a_task_twice(routes, muster):
     assert err.startswith("start: ")
 
 
+@pytest.mark.long
 def test_a_mission_without_tasks(muster):
     Path("idle.yaml").write_text("{schema: muster/1, robots: [{id: r_0, position: [0, 0]}], tasks: []}", "utf-8")
     for allocator in ALLOCATORS:

@@ -16,7 +16,7 @@ from muster.mission.reading.plan_reader import read_plan
 pytestmark = pytest.mark.usefixtures("folder")
 
 
-@pytest.mark.long(keep=3)
+@pytest.mark.long
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -85,11 +85,13 @@ class OnTerminal:
         return code, out.decode(), self.shown.decode()
 
 
+@pytest.mark.long
 def test_progress_is_not_shown_when_asked_for_quiet():
     code, _, shown = OnTerminal("solve", "eil51-5", "--time-limit", 1, "-q").finish()
     assert (code, shown) == (0, "")
 
 
+@pytest.mark.long
 def test_progress_is_not_shown_where_there_is_no_terminal():
     done = subprocess.run(
         [MUSTER, "solve", "eil51-5", "--iterations", "500"], capture_output=True, encoding="utf-8", check=False
@@ -98,7 +100,7 @@ def test_progress_is_not_shown_where_there_is_no_terminal():
     assert "planning" not in done.stdout
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("form", ["table", "json"])
 def test_progress_is_shown_on_a_terminal_and_ctrl_c_keeps_the_best_plan_so_far(form, muster):
     run_ = OnTerminal("solve", "eil51-5", "--time-limit", 600, "-o", "plan.json", "--format", form)

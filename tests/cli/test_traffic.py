@@ -84,6 +84,7 @@ def test_lanes_that_are_left_out_are_named(muster, lanes):
     assert err == "warning: lanes.edges[2]: 0.5 m wide, diameter 0.6 m; the lane is left out\n"
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
 def test_the_picture_is_written(muster, aisles, tmp_path, suffix):
     file = tmp_path / f"roadmap{suffix}"

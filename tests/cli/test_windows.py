@@ -67,6 +67,7 @@ def test_plans_are_made_and_judged():
     assert (code, err) == (0, "")
 
 
+@pytest.mark.long
 def test_every_verb_can_be_imported():
     lines = "for verb in verbs():\n    assert muster.get_command(None, verb), verb\n"
     lines = f"from muster.cli.main import muster, verbs\n{lines}"

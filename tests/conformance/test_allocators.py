@@ -23,7 +23,7 @@ def without_times(plan):
     return replace(plan, elapsed_s=None, history=tuple((0.0, value) for _, value in plan.history))
 
 
-@pytest.mark.long(keep=12)
+@pytest.mark.long(keep=1)
 @every_allocator
 @given(seed=st.integers(0, 10**6), ignore=st.sets(st.sampled_from(RULES)), tasks=st.integers(0, 12))
 def test_every_plan_is_admissible_and_its_figures_are_the_judges(allocator, seed, ignore, tasks):
@@ -36,7 +36,7 @@ def test_every_plan_is_admissible_and_its_figures_are_the_judges(allocator, seed
     assert plan.ignored == tuple(rule for rule in RULES if rule in ignore)
 
 
-@pytest.mark.long(keep=8)
+@pytest.mark.long(keep=1)
 @every_allocator
 @given(seed=st.integers(0, 10**6))
 def test_every_task_left_out_has_a_reason_for_every_robot(allocator, seed):
@@ -49,7 +49,7 @@ def test_every_task_left_out_has_a_reason_for_every_robot(allocator, seed):
         assert {reason.reason for reason in item.reasons} <= set(REASONS)
 
 
-@pytest.mark.long(keep=21)
+@pytest.mark.long(keep=10)
 @every_allocator
 @pytest.mark.parametrize("name", ["31T-6R50", "market-rescue", "eil51-5"])
 def test_the_same_seed_and_iterations_give_the_same_plan(allocator, name):
@@ -66,7 +66,7 @@ def test_other_seeds_give_other_plans(allocator):
     assert len(plans) > 1
 
 
-@pytest.mark.long(keep=8)
+@pytest.mark.long(keep=3)
 @every_allocator
 def test_history_only_improves_and_ends_at_the_plan(allocator):
     plan = muster.solve(muster.load("eil51-5"), allocator, iterations=300)

@@ -45,6 +45,7 @@ def test_goods_and_energy_are_planned_or_refused_by_name(allocator, word):
     assert any(stop.is_station for route in plan.routes for stop in route.stops)
 
 
+@pytest.mark.long(keep=34)
 @pytest.mark.parametrize("allocator", those_that_can(["load", "battery"]))
 @pytest.mark.parametrize("seed", range(1000, 1015))
 def test_plans_of_missions_with_goods_and_energy_are_admissible(allocator, seed):

@@ -122,7 +122,7 @@ def test_robots_that_go_any_way_have_the_velocity_they_want(kind, states, limits
     np.testing.assert_allclose(kind.velocities(states, inputs)[:, :3], wanted, atol=1e-9)
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=1)
 @every_kind
 @examples(25)
 @given(

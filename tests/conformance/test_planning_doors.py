@@ -183,7 +183,7 @@ def figures(answer):
     return {name: value for name, value in plain.items() if name != "elapsed_s"}
 
 
-@pytest.mark.long(keep=16)
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("case", [pytest.param(case, id=case.name.replace(" ", "-")) for case in (*VALID, *INVALID)])
 def test_the_doors_answer_alike(case, worker, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -218,6 +218,7 @@ def test_the_body_of_the_api_has_the_fields_of_the_request():
     assert set(Request.__dataclass_fields__) == {*OPTIONS, "mission", "start", "fixed"}
 
 
+@pytest.mark.long
 def test_the_bounds_are_those_that_can_be_proven():
     from muster.allocation.exact.proofs import PROOFS
 

@@ -36,6 +36,7 @@ def world_of(request):
     return PhysicsWorld
 
 
+@pytest.mark.long(keep=3)
 @every_kind
 def test_robots_reach_way_points_turn_and_hold(world_of, kind):
     world: SimulatedWorld = world_of(mission(robot(**kind)))
@@ -168,6 +169,7 @@ def test_what_is_out_of_range_is_told(world_of, wrong, message):
         world_of(mission(robot()), **wrong)
 
 
+@pytest.mark.long(keep=3)
 @every_kind
 def test_a_world_made_of_a_snapshot_goes_on_as_the_one_of_which_it_is(world_of, kind):
     team = mission(robot("a", **kind), robot("b", position=(0.0, 5.0), **kind), robot("c", position=(0.0, 9.0), **kind))

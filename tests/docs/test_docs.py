@@ -27,6 +27,7 @@ def blocks(text, language):
     return re.findall(rf"```{language}\n(.*?)```", text, flags=re.DOTALL)
 
 
+@pytest.mark.long
 def test_the_python_example_of_the_readme_runs(tmp_path, monkeypatch):
     example = blocks(README, "python")[0]  # the other one: tests/examples/test_ways_in.py
     monkeypatch.chdir(tmp_path)

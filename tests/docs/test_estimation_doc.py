@@ -8,6 +8,7 @@ import pytest
 TEXT = (Path(__file__).parents[2] / "docs" / "estimation.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 def test_its_examples_run(capsys):
     names = {}
     for example in re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL):

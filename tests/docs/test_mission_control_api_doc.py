@@ -48,6 +48,7 @@ def test_the_command_runs(url, tmp_path, monkeypatch, capsys):
     assert "objective" in capsys.readouterr().out
 
 
+@pytest.mark.long
 def test_the_curl_example_is_answered(url):
     _, _, address, _, header, _, body = shlex.split(block("sh", 1).replace(DESCRIBED, url))
     name, _, value = header.partition(": ")

@@ -17,6 +17,7 @@ BLOCKS = [
 ]
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize(("code", "output"), BLOCKS)
 def test_a_block_runs_and_prints_what_stands_below_it(code, output, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)

@@ -51,6 +51,7 @@ def test_wrong_values_are_named_with_their_line(muster, tmp_path):
         assert ended.stderr.splitlines()[0] == f"{wrong}:5: {expected}"
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("allocator", KEEPING)
 def test_allocators_keep_it_and_the_judge_agrees(muster, tmp_path, allocator):
     plan = tmp_path / "plan.json"
@@ -80,6 +81,7 @@ def test_it_is_ignored_by_its_word(muster):
     assert (told["ignored"], told["unassigned"]) == (["max-tasks"], [])
 
 
+@pytest.mark.long
 def test_the_bound_is_that_of_the_best_plan(muster):
     pytest.importorskip("ortools", reason="needs the extra exact")
     limits = ("--iterations", "100", "--time-limit", "60")
@@ -87,6 +89,7 @@ def test_the_bound_is_that_of_the_best_plan(muster):
     assert told["lower_bound"] == pytest.approx(told["objective"]["value"]) == pytest.approx(76)
 
 
+@pytest.mark.long
 def test_explain_names_it_and_what_would_lift_it(muster, tmp_path):
     muster("solve", MISSION, "--iterations", "200", "-q", "-o", tmp_path / "plan.json")
     told = muster("explain", MISSION, tmp_path / "plan.json").stdout
@@ -94,6 +97,7 @@ def test_explain_names_it_and_what_would_lift_it(muster, tmp_path):
     assert "max_tasks 3 instead of 2" in told
 
 
+@pytest.mark.long
 def test_robots_that_take_over_keep_it_with_what_they_have_done(muster, tmp_path):
     """When r_0 fails r_1 has done one task of the two that it may do: one more, and not two."""
     near = TEXT.replace("[40, 0], max_tasks: 1}", "[9, 0], max_tasks: 2}")
@@ -162,10 +166,8 @@ def test_the_form_of_missions_has_a_column_for_it(run):
     assert run("-c", code).stdout == "number\n"
 
 
-@pytest.mark.parametrize(
-    ("first", "missions", "more_than"),
-    [(0, 3, 0), *(pytest.param(first, 12, 10, marks=pytest.mark.long) for first in (0, 12, 24))],
-)
+@pytest.mark.long
+@pytest.mark.parametrize(("first", "missions", "more_than"), [(0, 3, 0), *((first, 12, 10) for first in (0, 12, 24))])
 def test_every_plan_of_small_missions_says_the_same(run, first, missions, more_than):
     told = json.loads(run("-m", "tests.examples.max_tasks_trials", first, missions).stdout)
     assert told["failures"] == {}

@@ -26,7 +26,7 @@ def run(name, folder):
     ).stdout
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("name", SAID)
 def test_a_script_says_what_it_is_for(name, tmp_path):
     said = run(name, tmp_path)

@@ -49,7 +49,7 @@ def kinds(executor):
     return [event.kind for event in executor.events]
 
 
-@pytest.mark.long(keep=8)
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_missions_are_carried_out_as_planned(name):
     """Every task, in order, after its prerequisites, for the usage and in the time that the judge finds; no events."""

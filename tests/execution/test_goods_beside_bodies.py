@@ -39,6 +39,7 @@ def test_bodies_of_any_size_at_any_place(radii, at_s):
     assert not report.contacts or 0.0 in radii  # who has no body drives through others
 
 
+@pytest.mark.long
 def test_the_place_is_one_that_is_free_on_the_map():
     """The robot fails in a dead end of a corridor: beside it are walls, and behind it is the way out."""
     mission = load(CASE)

@@ -66,6 +66,7 @@ def test_an_order_among_many_is_planned_with_few_and_no_other_task_changes_robot
     assert executor.state.routes == {name: tuple(s.route) for name, s in executor.crew.items() if s.route}
 
 
+@pytest.mark.long
 def test_of_many_orders_all_are_done_once():
     executor, world = executor_of(fleet(), [*orders(200), *(one for k in range(1, 40) for one in orders(1, float(k)))])
     carry_out(executor, world)

@@ -97,6 +97,7 @@ def test_a_failure_among_20_robots_and_100_tasks_is_answered_better_than_by_gree
     )
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("stability", [0, 1, 3])
 def test_no_more_tasks_change_robot_than_the_rules_let(stability):
     """The plan is made badly before, so that a free search would move much more."""
@@ -118,6 +119,7 @@ def test_no_more_tasks_change_robot_than_the_rules_let(stability):
     assert len(moved[None]) > 10
 
 
+@pytest.mark.long
 def test_usages_of_the_rest_are_those_of_the_whole_mission():
     """What was used and what is left make up the plan's usage: nothing has changed, so it can only become less."""
     judged = 0
@@ -161,7 +163,7 @@ def test_travel_tables_hold_from_where_robots_are(seed):
     } == {task.id for task in mission.tasks}
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["floor", "yard"])
 def test_over_a_map_a_failed_robots_work_is_done_by_the_others(name):
     mission = muster.load(name)

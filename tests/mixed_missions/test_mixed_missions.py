@@ -17,6 +17,7 @@ DECIDED = (7, 11, 60, 190, 293, 381, 430, 480, 501, 609, 738, 1130, 1398, 2276, 
 """Seeds of which something was wrong once: crashes, reasons that are refuted, plans that the judge rejects."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("first", [0, *(pytest.param(k * CHUNK, marks=pytest.mark.long) for k in range(1, 22))])
 def test_nothing_that_is_said_is_refuted(first):
     reports = [trial(seed) for seed in range(first, first + CHUNK)]
@@ -25,7 +26,7 @@ def test_nothing_that_is_said_is_refuted(first):
     assert counts["search finds the best"] >= 0.9 * CHUNK
 
 
-@pytest.mark.long(keep=3)
+@pytest.mark.long
 @pytest.mark.parametrize("seed", DECIDED)
 def test_seeds_that_were_wrong_once(seed):
     assert trial(seed).failures == []
@@ -78,6 +79,7 @@ def test_no_plan_of_whole_routes_is_better_than_the_best(seed):
                 assert verdict.value() >= best.objective - 1e-9
 
 
+@pytest.mark.long
 def test_what_goes_wrong_is_a_failure(monkeypatch):
     monkeypatch.setattr("tests.mixed_missions.trial.lower_bound", lambda problem: 1e9)
     whole = next(seed for seed in range(50) if trial(seed).failures)
@@ -92,6 +94,7 @@ def _endless_at_one(seed):
     return trials.Report(seed)
 
 
+@pytest.mark.long
 def test_a_trial_that_never_ends_is_a_failure_and_the_others_go_on():
     reports = {report.seed: report.failures for report in trials.tried(_endless_at_one, range(3), 1, 0.3)}
     assert reports == {0: [], 1: ["its process ended: more than 0.3 s of CPU time"], 2: []}

@@ -43,7 +43,7 @@ def of_seeds(seeds, mission_of, ignored_of):
     return sum((compared(mission_of(seed), ignored_of(seed), seed) for seed in seeds), Counter())
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("first", range(0, 400, 50))
 def test_times_teams_and_relations(first):
     counts = of_seeds(range(first, first + 50), timed_mission, ignored_in)

@@ -149,6 +149,7 @@ def _naming() -> dict[str, set[str]]:
     return found
 
 
+@pytest.mark.long
 def test_no_other_file_names_a_rule_and_no_file_is_allowed_what_it_does_not_need():
     allowed = {file: set(rules.split()) for file, (rules, _) in (ALLOWED | OTHER_MEANING).items()}
     assert _naming() == allowed

@@ -1,6 +1,7 @@
 """From the map to the motion: what is driven keeps the clearance that the map asks for, and the robot's limits."""
 
 import numpy as np
+import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -46,6 +47,7 @@ def assert_within_limits(motion):
     assert (gains <= LIMITS.acceleration_mps2 * np.diff(motion.times) * (1 + 1e-4) + 1e-6).all()
 
 
+@pytest.mark.long
 @settings(max_examples=25, deadline=None)
 @given(regions(), st.integers(0, 2**32 - 1), planners, st.sampled_from((0.1, 0.3)))
 def test_among_polygons(space, seed, planner, radius):

@@ -78,6 +78,7 @@ def _paths(routes, prefix=""):
             raise AssertionError(f"no way to look into {route!r}")
 
 
+@pytest.mark.long
 def test_nothing_answers_without_a_token(app, client):
     paths = sorted(set(_paths(app.routes)))
     assert len(paths) > 50
@@ -92,6 +93,7 @@ def test_nothing_answers_without_a_token(app, client):
                 assert client.request(method, path).status_code == 401, (method, path)
 
 
+@pytest.mark.long
 def test_a_session_is_no_way_past_the_origin(app, client):
     for path, kind in sorted(set(_paths(app.routes))):
         if kind == "websocket":
@@ -186,12 +188,14 @@ def test_it_is_not_even_made_where_that_is_not_safe(more):
         make_app(Settings(**more))
 
 
+@pytest.mark.long
 def test_a_second_application_in_one_process_on_postgresql(postgresql_url):
     with Client(make_app(Settings(database=postgresql_url)), base_url="http://localhost") as client:
         assert client.get("/healthz").status_code == 200
         assert client.get("/api/v1/me").json()["name"] == "local"
 
 
+@pytest.mark.long
 def test_the_server_is_made_without_what_makes_it_large():
     """Planning, simulation and drawing are work of other processes; NumPy alone would be 13 MB and 0.2 s."""
     program = (

@@ -88,6 +88,7 @@ def test_each_list_of_the_api_is_one_of_these_and_says_how_it_goes_on():
         assert 'rel="next"' in operation["responses"]["200"]["headers"]["Link"]["description"]
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("path", LISTS)
 def test_a_list_is_answered_page_by_page(site, path):
     url, file = site
@@ -108,6 +109,7 @@ def test_a_list_is_answered_page_by_page(site, path):
     assert most.json() == rows[:MOST_ROWS]
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("path", LISTS)
 def test_filters_stay_from_page_to_page(site, path):
     known = {one["name"] for one in dict(lists_described())[_template(path)]["parameters"] if one["in"] == "query"}
@@ -131,7 +133,7 @@ def chromium():
         yield browser
 
 
-@pytest.mark.long(keep=3)
+@pytest.mark.long
 @pytest.mark.parametrize("path", PAGES)
 def test_a_page_reads_no_more_rows_than_it_shows(site, chromium, path):
     url, file = site
@@ -145,6 +147,7 @@ def test_a_page_reads_no_more_rows_than_it_shows(site, chromium, path):
     page.close()
 
 
+@pytest.mark.long
 def test_pages_lead_to_the_next_rows(site, chromium):
     page = chromium.new_page()
     page.goto(site[0] + "/")
@@ -182,6 +185,7 @@ def test_older_plans_and_versions_are_listed_when_they_are_asked_for(site, chrom
     page.close()
 
 
+@pytest.mark.long
 def test_missions_are_found_by_all_words_of_their_names_and_ids(site):
     with httpx.Client(base_url=f"{site[0]}/api/v1", timeout=60) as http:
 
@@ -200,6 +204,7 @@ def test_a_place_in_the_list_of_missions_that_is_none_is_refused(site):
         assert (answer.status_code, f"after: {after}; expected" in answer.json()["error"]) == (400, True)
 
 
+@pytest.mark.long
 def test_the_client_goes_from_page_to_page(site):
     with Client(site[0]) as client:
         assert len(client.missions.list()) == ROWS + len(shipped_entries())

@@ -100,7 +100,7 @@ def away(point, line):
     )
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["floor", "yard"])
 def test_robots_stay_clear_of_walls(name):
     mission = muster.load(name)

@@ -61,6 +61,7 @@ def test_a_robot_of_half_the_radius_is_half_as_large():
     assert extent(simulated.model, simulated.data) == pytest.approx((0.1405, 0.153, 0.0705), abs=0.006)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("build", list(BodyKind))
 def test_walls_stop_bodies(build):
     at = (0.0, 0.0, 1.0 if build in FLYING else 0.0)
@@ -143,7 +144,7 @@ def test_a_robot_that_joins_leaves_the_others_in_flight():
     assert world.velocities[0] == pytest.approx((0.5, 0.0, 0.0), abs=0.01)
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["6T-2R", "11T-2R"])
 def test_ground_missions_are_done_as_in_the_kinematic_world(name):
     team = muster.load(name)
@@ -154,6 +155,7 @@ def test_ground_missions_are_done_as_in_the_kinematic_world(name):
     assert flown[1] == pytest.approx(flown[0], rel=0.03)
 
 
+@pytest.mark.long
 def test_events_befall_robots_of_the_physics_world():
     team = muster.load("6T-2R")
     helper = robot("r_9", (1.0, 1.0), type="beta", **WAFFLE)

@@ -47,6 +47,7 @@ def resumed(world):
     return PhysicsWorld(replace(MISSION, robots=robots), snapshot=snapshot)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("stands", [False, True])
 def test_who_is_put_elsewhere_stays_there(stands):
     world = in_motion()

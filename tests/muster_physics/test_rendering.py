@@ -79,6 +79,7 @@ def test_a_lens_of_another_size_and_one_too_large_are_told(world):
         Lens(4000, 3000, 500.0)
 
 
+@pytest.mark.long
 def test_the_backend_is_chosen_before_mujoco_comes():
     program = (
         "import os; os.environ.pop('MUJOCO_GL', None); import muster_physics.rendering; print(os.environ['MUJOCO_GL'])"
@@ -87,6 +88,7 @@ def test_the_backend_is_chosen_before_mujoco_comes():
     assert said in BACKENDS
 
 
+@pytest.mark.long
 def test_nothing_of_it_comes_with_muster():
     program = (
         "import sys, muster.running.simulation, muster.cli.verbs.simulate; from muster.running.worlds import WORLDS; "

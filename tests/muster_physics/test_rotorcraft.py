@@ -154,7 +154,7 @@ def test_it_hovers_at_the_hover_speed():
     assert world.positions[0] == pytest.approx((0.0, 0.0, 2.0), abs=1e-6)
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long
 @pytest.mark.parametrize("radius_m", [0.1, 0.35])
 @pytest.mark.parametrize("kinematics", ["hexacopter", "quadcopter"])
 def test_it_flies_to_way_points_and_does_not_overshoot(kinematics, radius_m):
@@ -172,7 +172,7 @@ def test_it_flies_to_way_points_and_does_not_overshoot(kinematics, radius_m):
     assert world.headings[0] == pytest.approx(1.0, abs=0.02)
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("heading", [0.0, 2.0])
 def test_the_predicted_place_moves_as_commanded(heading):
     """Which is why the crowd may decide by it: position plus lag, while the drone answers late."""
@@ -190,7 +190,7 @@ def test_the_predicted_place_moves_as_commanded(heading):
     assert done.poses[0, :3] == pytest.approx(commanded, abs=0.05)
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("space", "speed", "around", "seed"), [(False, 1.0, 1.6, 0), (True, 2.0, 2.5, 1), (False, 3.0, 3.0, 2)]
 )

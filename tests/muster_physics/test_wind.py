@@ -20,6 +20,7 @@ def test_turbulence_is_that_of_low_altitude(height_m, feet):
     assert lengths / FOOT == pytest.approx([feet / share**1.2, feet / share**1.2, feet])
 
 
+@pytest.mark.long
 def test_gusts_have_the_deviations_and_correlations_of_the_model():
     """Autocorrelation after t = s T: exp(-s) along, exp(-s) (1 - s / 2) across and upright."""
     gusts, step = Gusts((1,)), 0.5

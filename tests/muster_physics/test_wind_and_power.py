@@ -21,6 +21,7 @@ HEXACOPTER = {"kind": "air", "kinematics": "hexacopter", "radius_m": 0.35}
 WAFFLE = {"kinematics": "differential-drive", "radius_m": 0.3, "speed_mps": 0.26, "yaw_rate_radps": 1.82}
 
 
+@pytest.mark.long
 def test_a_drone_holds_its_place_in_wind_by_leaning_against_it():
     """In balance the tangent of the lean is rotor drag over weight."""
     world = PhysicsWorld(
@@ -35,7 +36,7 @@ def test_a_drone_holds_its_place_in_wind_by_leaning_against_it():
     assert -up[0] / up[2] == pytest.approx(drag * up[2] / (FIREFLY.mass_kg * 9.81), rel=0.03)
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(2))
 def test_eight_that_cross_in_light_gusts_do_not_touch(seed):
     team = []
@@ -60,7 +61,7 @@ def test_robots_on_the_ground_feel_no_wind():
     np.testing.assert_array_equal(driven(), driven(wind=Wind(velocity_mps=(20.0, 0.0, 0.0), gusts_mps=10.0)))
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize(("kinematics", "airframe"), [("hexacopter", FIREFLY), ("quadcopter", RB5)])
 def test_hovering_empties_a_battery_in_the_flight_time(kinematics, airframe):
     given = HEXACOPTER | {"kinematics": kinematics, "radius_m": 0.2}

@@ -23,6 +23,7 @@ def test_all_that_ships_as_a_mission_is_in_it():
     assert {"31T-6R50", "eil51-5", "auction-2", "market-rescue-20"} <= set(MISSIONS)
 
 
+@pytest.mark.long
 def test_a_table_has_every_allocator_and_objective(compared):
     for table in compared.tables[1:]:
         assert [row["allocator"] for row in table.records()] == list(ALLOCATORS)

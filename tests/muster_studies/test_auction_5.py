@@ -38,6 +38,7 @@ def own(table):
     return [record for record in table.records() if record["values"] != "thesis"]
 
 
+@pytest.mark.long
 def test_all_tables_are_there(auction_report):
     assert {table.number: len(table.rows) for table in auction_report.tables} == ROWS
     assert list(study_named("auction-5").tables) == list(ROWS)

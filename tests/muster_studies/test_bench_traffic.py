@@ -44,6 +44,7 @@ def test_files_of_a_folder_are_read(tmp_path, monkeypatch):
     assert notes == ["1 of 1 solved; sum of costs 6, at least 6"] * 2
 
 
+@pytest.mark.long
 def test_500_robots_of_one_seed():
     (row,) = warehouse_bench(1)
     assert row.note.startswith("1 of 1 solved")

@@ -13,6 +13,7 @@ pytestmark = pytest.mark.usefixtures("folder")
 QUICK = ("--missions", "uniform:tasks=5:robots=2:count=2", "--seeds", 1, "--iterations", 10, "--jobs", 1)
 
 
+@pytest.mark.long
 def test_tables_are_printed_and_files_written(muster):
     arguments = ("compare", *QUICK, "-a", "greedy,auction", "-o", "runs.csv", "--report", "r.html", "--plot", "r.svg")
     code, out, err = muster(*arguments)

@@ -21,7 +21,7 @@ def test_numbers_and_tables_are_a_study_s_own(name):
         assert not figure.shows.endswith(".")
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("study", "number"),
     [("auction-5", "5.3"), ("auction-5", "5.16"), ("auction-5", "5.15"), ("thesis-6", "6.12"), ("market-rescue", "6"),
@@ -34,6 +34,7 @@ def test_a_figure_is_drawn_without_tables(study, number, tmp_path, capsys):
     assert capsys.readouterr().out == ""
 
 
+@pytest.mark.long
 @pytest.mark.skipif(find_spec("mujoco") is None or find_spec("cv2") is None, reason="needs the extra `physics`")
 def test_a_view_of_the_physics_world(tmp_path):
     assert muster(["study", "thesis-6", "--figures", "6.11", "--plot", str(tmp_path)]) == 0

@@ -8,6 +8,7 @@ from muster_studies.flown.study import Job, times_of
 ACTIONS, WALLS, TEAMS = "6T-2R-actions", "yard", "collapsed-building"
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("name", [ACTIONS, WALLS, TEAMS])
 def test_shipped_missions_take_as_long_as_planned(name):
     assert abs(times_of(Job(name).mission).off) <= 5

@@ -29,7 +29,7 @@ def test_equal_robots_face_to_face_pass(kinematics, method, seed):
     assert outcome.mission_time_s < 20
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("method", [*METHODS, RESERVE])
 def test_everybody_gets_through_a_one_way_door(method):
     """Before robots that wait were told from stuck ones, 5 of 20 did by the method that was the default."""

@@ -14,6 +14,7 @@ def tables():
     return {table.number: table.records() for table in report.tables}
 
 
+@pytest.mark.long
 def test_a_map_keeps_the_error_bounded_and_scans_are_better_than_wheels(tables):
     odometry, scans, particles = tables["tracking"]
     assert max(particles["mean error m"], scans["mean error m"]) < odometry["mean error m"]

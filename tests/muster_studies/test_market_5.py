@@ -79,6 +79,7 @@ def test_cylinders_stand_free():
         assert math.dist(task.position, SURVIVORS[task.id]) <= 0.15 + 1e-9
 
 
+@pytest.mark.long
 def test_no_robot_drives_over_a_cylinder(result):
     places = result.flown[LANDMARKED].positions.reshape(-1, 1, 2)
     assert np.linalg.norm(places - CYLINDERS[:, :2], axis=2).min() > BODY_RADIUS_M + CYLINDER_RADIUS_M

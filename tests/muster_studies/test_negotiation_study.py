@@ -13,6 +13,7 @@ from muster_studies.negotiation.study import AuctionRun, Cost, hold
 from muster_team.negotiators.methods import METHODS
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("method", METHODS)
 def test_loss_costs_messages_and_never_the_plan(method):
     lossless, lossy = (hold(AuctionRun(method, 6, loss, 1)) for loss in (0.0, 0.3))
@@ -36,6 +37,7 @@ def test_large_teams_are_tried_with_few_seeds():
     assert sum(talk.robots == 5 for talk in jobs) == 40
 
 
+@pytest.mark.long
 def test_the_command(tmp_path, capsys):
     pytest.importorskip("matplotlib")
     arguments = ["study", "negotiation", "--quick", "--seeds", "1", "--format", "json", "--plot", str(tmp_path)]

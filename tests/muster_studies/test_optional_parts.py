@@ -97,6 +97,7 @@ def of_first_table(name):
     return call if name.startswith("peers") else [*call, "--iterations", "20"]  # solvers of peers have the same time
 
 
+@pytest.mark.long
 @group(())
 def test_every_verb_says_its_help_with_the_core_install_alone(answers):
     assert {"study", "bench"} <= {call[0] for call in HELP}

@@ -72,7 +72,7 @@ PAIRS = [
 ]
 
 
-@pytest.mark.long(keep=9)
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize(("name", "peer", "objective"), PAIRS)
 def test_plans_are_admissible_and_worth_what_the_peer_says(name, peer, objective):
     mission = large_mission(12, 3) if name.startswith("uniform") else muster.load(name)
@@ -101,7 +101,7 @@ def test_cp_sat_has_at_least_the_plan_of_greedy(objective):
         assert verdict.value(objective) <= greedy.objective_value * (1 + 1e-9)
 
 
-@pytest.mark.long(keep=3)
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("seed", range(12))
 def test_every_rule_is_translated(seed):
     """Skills, suitability, locks, capacities, priorities, ends, speeds, entries: what is wrong in a model is seen."""
@@ -260,6 +260,7 @@ def test_only_random_solvers_run_with_several_seeds():
     assert isinstance(standings[match, OWN].worst, Result)
 
 
+@pytest.mark.long
 def test_the_report_has_every_mission_solver_and_the_machine():
     counted = []
     report = peers_study(Limits(0.05, 0.05, 0.2)).run(

@@ -56,7 +56,7 @@ def task(name, x, **more):
     return Task(id=name, position=(x, 0), **more)
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("peer", PEERS_WITH_GOODS)
 def test_what_finds_no_room_is_left_out(peer):
     tasks = (task("1", 10, load=3), task("2", 20, load=2), task("3", 30, load=2), task("4", 40))
@@ -67,7 +67,7 @@ def test_what_finds_no_room_is_left_out(peer):
     assert answered(on_a_line(*tasks, robots=2, load_capacity=5.9), peer).tasks_completed == 4
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("peer", PEERS_WITH_GOODS)
 def test_one_robot_picks_up_and_delivers(peer):
     far = (task("1", 30, load=2), task("2", 10, delivers="1"), task("3", 20, load=1), task("4", 15, delivers="3"))

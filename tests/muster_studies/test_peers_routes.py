@@ -34,7 +34,7 @@ TASKS = {"mtsp100": 99, "rand100": 99, "mtsp150": 149, "kroa200": 199, "rat783":
 DEPOTS = {"md2": 200, "md4": 395, "md12": 100, "md24": 400}
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("number", BY_NUMBER)
 def test_a_family_is_compared_in_its_smallest_form(number):
     for package in ("ortools", "pyvrp"):

@@ -88,7 +88,7 @@ def test_the_way_back_counts_where_the_mission_says_so(rules, end):
     assert answered(mission).makespan_s == pytest.approx(end)
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("shape", SHAPES)
 def test_few_tasks_end_as_early_as_with_search(shape):
     match, limits = Match(mission=f"waiting-{shape}-8-2-0", objective="makespan"), {OWN: 0.3, PEER: 6.0}

@@ -19,6 +19,7 @@ def plans(samples):
     }
 
 
+@pytest.mark.long
 def test_any_number_of_workers_gives_the_same():
     counts = []
     one = run_cases([*SHORT, SHORT[1]], 3, 1, lambda done, whole: counts.append((done, whole)))

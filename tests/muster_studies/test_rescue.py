@@ -78,6 +78,7 @@ def test_figure_6(rescue_tables):
     assert rows(table, robot="mission", values="paper")[0]["total"] == 83.0
 
 
+@pytest.mark.long
 def test_figure_7(rescue_tables):
     flights = rescue_tables["Figure 7"].records()
     assert [record["flight"] for record in flights] == ["without noise", "noise, seed 0", "noise, seed 1"]
@@ -89,6 +90,7 @@ def test_figure_7(rescue_tables):
     assert flights[0]["arrives s"] < min(record["arrives s"] for record in flights[1:])
 
 
+@pytest.mark.long
 def test_figure_8(rescue_tables):
     table = rescue_tables["Figure 8"]
     assert len(table.rows) == 3 * len(METRICS)
@@ -134,6 +136,7 @@ def test_in_the_richer_mission_only_what_one_robot_alone_can_do_is_lost():
             assert not any(required[task] <= skills for task, _ in report.tasks_lost for skills in others)
 
 
+@pytest.mark.long
 def test_a_body_that_lies_on_a_survivor_is_what_holds_the_second_robot_up():
     """Every task that is lost though another robot has the skill has the dead body nearer than both radii."""
     mission, found = mission_of(PAIRS), 0
@@ -166,6 +169,7 @@ def test_teams():
     assert all(not mission_of(team).events for team in TEAMS)
 
 
+@pytest.mark.long
 def test_the_same_seed_flies_the_same(calm):
     again = undisturbed(EFFORT).perform()
     assert (again.positions == calm.positions).all()

@@ -23,6 +23,7 @@ def rows(table, **wanted):
     return [record for record in table.records() if wanted.items() <= record.items()]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("number", "count"), [("A.17", 4), ("A.22", 3)])
 def test_all_arrive_and_none_touches(rvo_tables, number, count):
     """Least distance between centres above 0.32 m, the sum of the radii that are not inflated."""
@@ -127,6 +128,7 @@ def test_refuses_figures(capsys, arguments, message):
     assert captured.out == ""
 
 
+@pytest.mark.long
 def test_one_figure_without_tables(tmp_path, capsys):
     pytest.importorskip("matplotlib")
     assert muster(["study", "rvo", "--figures", "A.8", "--plot", str(tmp_path)]) == 0

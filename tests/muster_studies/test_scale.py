@@ -53,6 +53,7 @@ def test_runs_that_are_kept_are_not_made_again(asked, tmp_path):
     assert again.tables == report.tables
 
 
+@pytest.mark.long
 def test_a_run_is_a_process_whose_plan_is_read(tmp_path):
     run = measured(scales._mission(100, tmp_path), 100, "greedy", 30.0)
     assert (run.tasks, run.done, run.key) == (100, 100, (100, "greedy", 30.0))
@@ -61,6 +62,7 @@ def test_a_run_is_a_process_whose_plan_is_read(tmp_path):
     assert run.memory_mb > 10
 
 
+@pytest.mark.long
 def test_a_run_that_fails_ends_the_bench(tmp_path):
     with pytest.raises(MusterError, match="exit code 2"):
         measured(tmp_path / "none.yaml", 100, "greedy", 1.0)

@@ -7,7 +7,7 @@ import pytest
 from muster_studies.benches.search_quality import CASES, Case, Quality, quality
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long
 @pytest.mark.parametrize("case", [c for c in CASES if c.mission == "16T-3R"], ids=lambda case: case.name)
 def test_the_best_known_plans_of_a_small_mission_are_found(case):
     found = quality(case, seeds=2, iterations=20_000)
@@ -15,6 +15,7 @@ def test_the_best_known_plans_of_a_small_mission_are_found(case):
     assert found.gaps == pytest.approx([0, 0], abs=0.01)
 
 
+@pytest.mark.long
 def test_what_the_best_known_plan_leaves_out_may_be_left_out():
     case = next(case for case in CASES if case.mission == "flood")
     assert quality(case, seeds=1, iterations=120_000).reached == 1

@@ -17,6 +17,7 @@ def shift():
     return standing.on_duty(mission.at_once(robots=(*low, *mission.robots[3:])), SEED, UNTIL_S)
 
 
+@pytest.mark.long
 def test_a_fleet_that_charges_does_every_order_and_is_never_empty(shift):
     came = list(standing.orders(SEED, UNTIL_S))
     assert (shift.orders.taken, shift.orders.done, shift.lost) == (len(came), len(came), 0)
@@ -24,6 +25,7 @@ def test_a_fleet_that_charges_does_every_order_and_is_never_empty(shift):
     assert min(row.least_charge for row in shift.report.robots) > 0
 
 
+@pytest.mark.long
 def test_orders_come_more_often_in_a_burst():
     came = [event.at_s for event in standing.orders(SEED, 6 * standing.BURST_EVERY_S)]
     in_burst = [at for at in came if 0 <= at % standing.BURST_EVERY_S - standing.BURST_AT_S < standing.BURST_S]

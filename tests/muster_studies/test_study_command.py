@@ -76,6 +76,7 @@ def test_quick_study_prints_all_tables(capsys, tmp_path):
     assert row["F"] == pytest.approx(364.71, abs=0.011)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("name", ["auction-5", "market-rescue"])
 def test_other_quick_studies_print_all_tables(capsys, tmp_path, name):
     file = tmp_path / "study.json"

@@ -20,6 +20,7 @@ def report():
     return study_named("thesis-2").run(Effort(iterations=2, seeds=2, tables=("ranking", "2.2")))
 
 
+@pytest.mark.long
 def test_every_reviewed_allocator_is_ranked(report):
     rows = report.tables[0].records()
     assert [row[""] for row in rows] == list(range(1, len(rows) + 1))
@@ -90,6 +91,7 @@ def test_limits_of_processor_time_are_kept():
     assert outcome.history[-1][1] == outcome.value
 
 
+@pytest.mark.long
 def test_path_planners_are_beside_the_shortest_path():
     pytest.importorskip("shapely")
     report = study_named("thesis-2").run(Effort(seeds=1, tables=("planners",)))

@@ -31,6 +31,7 @@ def of(records, **labels):
     return found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", ROUTES)
 def test_routes_are_published_ones(tables, number):
     records = tables[number].records()

@@ -66,6 +66,7 @@ def records(table, **wanted):
     return [record for record in table.records() if wanted.items() <= record.items()]
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("number", ROUTES)
 def test_calculated_usages_are_the_published_ones(tables, number):
     rows = tables[number].records()
@@ -89,6 +90,7 @@ def test_own_calculations(tables, number, figure, usages):
     assert [record["own"] for record in records(tables[number], figure=figure)] == pytest.approx(usages, abs=5e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("number", "marks"),
     [
@@ -137,6 +139,7 @@ def test_what_must_hold_of_published_plans_that_are_flown(plan, mission):
             assert flown.report.starts_s[task.id] >= flown.report.ends_s[before] - 1e-9
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("mission", ACTIONS)
 def test_flown_is_planned_where_no_robot_is_in_the_way(mission):
     """With the ways within tasks in the plan: the thesis is 3 to 16 % off."""
@@ -150,6 +153,7 @@ def test_flown_is_planned_where_no_robot_is_in_the_way(mission):
     assert sum(among_others.usages) >= 0.99 * flown.planned.total_cost
 
 
+@pytest.mark.long
 def test_table_of_actions(tables):
     rows = tables["actions"].records()
     assert [record["plan"] for record in rows if record["robot"] == "all"] == [
@@ -252,6 +256,7 @@ def test_at_which_angles_misaligned_markers_cost_what_the_thesis_measured(monkey
     assert not any(turn < 13 for _, turn in held)
 
 
+@pytest.mark.long
 def test_slip_costs_half_of_it(tables):
     for mission in ("6T-2R-actions", "11T-2R-actions"):
         mean = {record["noise"]: record["mean %"] for record in records(tables["noise"], mission=mission)}
@@ -285,6 +290,7 @@ def test_a_reserve_spares_planning_again():
     assert sum(again[5:]) < sum(again[:5])
 
 
+@pytest.mark.long
 def test_a_flight_is_repeatable_and_its_reserve_is_kept():
     flight = Flight(mission="31T-6R50-as-run", iterations=100, reserve=0.1, noise=Noise(slip=0.1), seed=3)
     assert mission_with(flight).rules.capacity_reserve == 0.1
@@ -308,6 +314,7 @@ def test_effort_counts():
     assert best_of(flights, found).planned.value("total+max") == min(values.values())
 
 
+@pytest.mark.long
 def test_the_command(tmp_path, capsys):
     pytest.importorskip("matplotlib")
     pytest.importorskip("mcap", reason="figure 6.14 needs the extra `record`")

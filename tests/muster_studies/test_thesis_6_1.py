@@ -102,6 +102,7 @@ def test_without_anything_found_tables_have_gaps(six_tags):
     assert any(note.startswith("does not hold: physics, without noise: 0 of 6") for note in made.notes)
 
 
+@pytest.mark.long
 def test_usages_are_the_published_ones():
     table = DroneUsages().table(QUICK, FOUND)
     assert [record["own"] for record in records(table, figure="6.2b")] == pytest.approx(
@@ -208,6 +209,7 @@ def test_without_the_extra_one_line_says_so(monkeypatch, capsys):
     assert "muster-robotics[physics]" in line
 
 
+@pytest.mark.long
 def test_only_fixes_bound_the_drift_of_a_drone(capsys):
     assert muster(["study", "thesis-6.1", "--quick", "--tables", "A6.1", "--format", "json", "-q"]) == 0
     (table,) = json.loads(capsys.readouterr().out)["tables"]

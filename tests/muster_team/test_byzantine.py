@@ -24,7 +24,7 @@ ROBOTS = [f"r_{k}" for k in range(5)]
 KEYS = keys_of(ROBOTS)
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("first", [0, 15, 30])
 def test_no_robot_harms_the_others_by_what_it_states(first):
     reports = [byzantine_trial(seed) for seed in range(first, first + 15)]
@@ -33,7 +33,7 @@ def test_no_robot_harms_the_others_by_what_it_states(first):
     assert sum(report.counts["refused"] for report in reports) > 50
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("first", [0, 12])
 def test_robots_take_the_same_orders_and_each_operator_is_answered(first):
     reports = [orders_trial(seed) for seed in range(first, first + 12)]

@@ -19,7 +19,7 @@ from muster_team.negotiators.negotiator import Negotiator
 RUNS = 15
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("timed", [False, True], ids=["untimed", "with rules of time"])
 def test_nothing_fails(timed):
     assert {seed: what for seed in range(RUNS) if (what := trial(seed, timed=timed).failures)} == {}
@@ -94,6 +94,7 @@ PLANTED = {  # which seed finds the fault, or one soon after it, and what it is:
 }
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("fault", PLANTED)
 def test_a_fault_of_the_protocol_is_found(monkeypatch, fault):
     """A test of the campaign; where other scenes take the place of these, other seeds will do."""
@@ -150,7 +151,7 @@ PLANTED_IN_TIME = {  # which run finds the fault with which seed, or soon after 
 }
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long
 @pytest.mark.parametrize("fault", PLANTED_IN_TIME)
 def test_a_fault_in_time_is_found(monkeypatch, fault):
     tried, first, *where = PLANTED_IN_TIME[fault]
@@ -158,13 +159,14 @@ def test_a_fault_in_time_is_found(monkeypatch, fault):
     assert any(tried(seed).failures for seed in range(first, first + 20))
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("tried", [like_the_centre, calm], ids=lambda tried: tried.__name__)
 def test_nothing_fails_of_teams_at_work(tried):
     """For those that carry a mission out see test_carried_out."""
     assert {seed: what for seed in range(4) if (what := tried(seed).failures)} == {}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("tried", "seed"), [(carried_out, 120), (carried_out, 1091), (calm, 368), (like_the_centre, 836)]
 )

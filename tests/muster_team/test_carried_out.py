@@ -9,13 +9,14 @@ from tests.muster_team.campaign.team_missions import team_scene
 SEEDS, CHUNK = 12, 6
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("first", range(0, SEEDS, CHUNK))
 def test_no_team_is_too_small_or_apart_and_nothing_is_left_without_a_reason(first):
     failures = {seed: what for seed in range(first, first + CHUNK) if (what := carried_out(seed).failures)}
     assert failures == {}
 
 
+@pytest.mark.long
 def test_a_team_whose_parts_were_done_before_it_lost_each_other_tells_later_that_it_has_ended():
     """Its robots are apart when they have done their parts, and break off; then each hears of the other's part."""
     assert carried_out(195).failures == []

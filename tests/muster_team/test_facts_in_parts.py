@@ -30,7 +30,7 @@ def added(*facts):
     return [fact.task for fact in agreed([Declaration("r_0", 1, 1, ("r_0",), facts=facts)], RULES).added]
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [3, 6, 16, 17])
 def test_a_link_that_flaps_while_more_facts_are_under_way_than_fit_a_message_ends_no_robot(seed):
     net = settled_team(line_mission(robots=3, tasks=2), seed=seed, loss=0.5, jitter_s=0.1)

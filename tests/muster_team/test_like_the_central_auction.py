@@ -44,7 +44,7 @@ def assert_like_central(problem, terms):
     }
 
 
-@pytest.mark.long(keep=10)
+@pytest.mark.long
 @pytest.mark.parametrize(("number", "name"), list(enumerate(mission_names())))
 def test_on_every_shipped_mission(number, name):
     more = {"salesmen": 3} if mission_path(name).suffix == ".tsp" else {}
@@ -62,6 +62,7 @@ def test_on_every_shipped_mission(number, name):
         assert_like_central(problem, Parameters(bid=bid, winner=winner, placement=placement))
 
 
+@pytest.mark.long(keep=6)
 @pytest.mark.parametrize(("bid", "winner", "placement"), list(product(BIDS, WINNERS, PLACEMENTS)))
 def test_under_all_terms(bid, winner, placement):
     problem = Problem.compile(muster.load("24T-5R")).ready()

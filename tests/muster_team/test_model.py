@@ -44,6 +44,7 @@ def test_an_exploration_that_is_cut_says_how_much_is_left():
     assert found.left > 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "bounds",
     [

@@ -50,6 +50,7 @@ class Team:
         return self.net.run(self.net.now + 30.0, self.is_without_it)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("told", ["r_0", "r_3"])
 def test_all_count_it_out_and_do_its_tasks_and_it_falls_silent(told):
     team = Team()
@@ -144,6 +145,7 @@ REFUSED = [
 ]
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("order", REFUSED)
 def test_who_may_not_revoke_is_refused_here_and_by_those_that_hear_it(order):
     team = Team()

@@ -1,5 +1,6 @@
 """False suspicions: what is measured is what the chance of losing all heartbeats for so long lets expect."""
 
+import pytest
 from tests.muster_team.simulated_figures import suspicion
 
 from muster_team.membership.members import Timeouts
@@ -14,11 +15,13 @@ def expected(loss, heartbeats):
     ]
 
 
+@pytest.mark.long
 def test_the_rate_is_that_of_runs_of_lost_beats():
     seen = suspicion.rate(0.5, runs=6, seed=1)
     assert expected(0.5, 20)[0] < seen.low < seen.mean < seen.high < expected(0.5, 15)[1]
 
 
+@pytest.mark.long
 def test_at_30_percent_loss_fewer_than_one_in_10000_pair_hours():
     seen = suspicion.rate(0.3, runs=6, seed=2)
     assert 0 < seen.low < seen.high < 1e-4

@@ -40,7 +40,7 @@ def flight(robot, seed, angle_rad=0.0, position_m=0.0):
         yield eye.look(image, taken_for, float(step))
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize(("angle_rad", "position_m", "most"), [(0.0, 0.0, 0.005), (math.radians(1), 0.03, 0.1)])
 def test_two_robots_find_all_tags(angle_rad, position_m, most):
     looks = [look for seed, robot in enumerate(("r_0", "r_1")) for look in flight(robot, seed, angle_rad, position_m)]

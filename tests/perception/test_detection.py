@@ -21,6 +21,7 @@ from .scenes import VGA, corners_in_map, drawn, over, tag_pose
 DETECTOR = TagDetector()
 
 
+@pytest.mark.long
 @settings(max_examples=25)
 @given(
     tag=st.integers(0, 586),

@@ -48,6 +48,7 @@ def test_without_errors_nothing_drifts():
     assert drift.times[-1] == pytest.approx(0.1 * (len(drift.times) - 1))
 
 
+@pytest.mark.long
 @settings(max_examples=25)
 @given(st.floats(0.001, 0.1), st.floats(0.001, 0.01))
 def test_biases_drift_as_far_as_they_must(scale, drift_mps):
@@ -60,6 +61,7 @@ def test_biases_drift_as_far_as_they_must(scale, drift_mps):
     np.testing.assert_allclose(biased.odometry, math.sqrt(3) * drift_mps * biased.times, atol=1e-5)
 
 
+@pytest.mark.long
 def test_fixes_bound_the_error_of_a_drone():
     """Without them the error of the last quarter is above the first's; with them it stays below 3 deviations."""
     without, with_fixes = [], []
@@ -75,7 +77,7 @@ def test_fixes_bound_the_error_of_a_drone():
     assert max(with_fixes) < 3 * math.sqrt(3) * 0.05
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("speed", [0.26, -0.26])
 def test_a_robot_on_the_ground(speed):
     """The gyro makes dead reckoning better, fixes bound it: mean errors over seeds."""

@@ -135,6 +135,7 @@ class Drive:
             yield lambda e: fusion.by_landmark(e, [3.0, 4.0], away, bearing, ERRORS)
 
 
+@pytest.mark.long
 def test_the_fusion_is_consistent():
     """Innovations of all sensors over seeded runs, and the errors at the end, within chi-square bounds of 99.9 %."""
     chi2 = pytest.importorskip("scipy.stats").chi2

@@ -31,6 +31,7 @@ def test_headings_are_the_same_a_turn_apart(heading, off):
     assert -np.pi <= here.estimate.mean[0] < np.pi
 
 
+@pytest.mark.long
 def test_the_fusion_is_consistent_and_learns_the_bias():
     from scipy.stats import chi2
 

@@ -50,6 +50,7 @@ def test_far_outside_no_wall_is_near(field):
     assert field.distances(np.array([[100.0, 100.0]])) > 0.9
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_it_tracks(field, seed):
     way = straight(1.0)
@@ -59,7 +60,7 @@ def test_it_tracks(field, seed):
     assert len(particles.particles) < 1000
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_it_finds_a_robot_that_does_not_know_where_it_starts(field, seed):
     way = straight(1.0, 25)
@@ -79,6 +80,7 @@ def test_it_finds_a_robot_that_was_carried_elsewhere(field, seed):
     np.testing.assert_allclose(followed(particles, later, random), later[-1], atol=0.15)
 
 
+@pytest.mark.long
 def test_the_same_seed_gives_the_same_particles(field):
     one, two = (MonteCarlo(field, anywhere, seed=5) for _ in range(2))
     for particles in (one, two):

@@ -74,6 +74,7 @@ def hovering(seed, passes=6, sightings=20):
     return RawEstimates.joined(raw)
 
 
+@pytest.mark.long
 def test_sightings_that_share_an_error_count_as_one():
     def mean_square(independent_after_s):
         squares = []

@@ -37,6 +37,7 @@ def mission(tmp_path, robot):
     return muster.load(str(file))
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(("steps", "share"), [(1, 0.25), (5, 0.45), (10, 0.55)])
 def test_a_robot_on_the_ground(tmp_path, steps, share):
     """Around a square's corners, which it takes turning on the spot."""
@@ -80,6 +81,7 @@ def test_a_reading_of_another_time_is_left():
     assert fused.velocity == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.long
 def test_a_robot_on_a_slope_climbs_as_its_odometry_says(tmp_path):
     """Two in ten; fixes alone would be 5 cm off."""
     drives = mission(tmp_path, "position: [0, 0, 0], kinematics: differential-drive, speed_mps: 0.5")

@@ -123,6 +123,7 @@ def driven(seed, *, rounds=2, steps=40, step_m=0.25):
     return estimate, pose, tags, np.array(places)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("runs", [12, pytest.param(100, marks=pytest.mark.long)])
 def test_errors_are_as_large_as_estimates_say(runs):
     """The heading drifts by 0.3 rad a round, so that places lie along arcs."""

@@ -22,6 +22,7 @@ def planned(mission, **asked):
     return answer(Request(mission=mission, iterations=1500, **asked)).plan
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seeds", [1, pytest.param(2, marks=pytest.mark.long)])
 def test_routes_spread_and_the_plan_says_what_its_traffic_takes(mission, seeds):
     """The time with traffic is on average shorter than that of plans that know nothing of it."""
@@ -76,6 +77,7 @@ def test_interrupted_the_first_plan_is_kept(mission):
     assert solution.plan.time_with_traffic_s is None
 
 
+@pytest.mark.long
 def test_progress_is_that_of_the_whole(mission):
     reports = []
     plan = answer(Request(mission=mission, iterations=1500), on_progress=reports.append).plan
@@ -84,6 +86,7 @@ def test_progress_is_that_of_the_whole(mission):
     assert (reports[-1].objective, reports[-1].weight) == (plan.objective_value, plan.weight_completed)
 
 
+@pytest.mark.long
 def test_a_plan_that_begins_with_fixed_routes_keeps_them(mission):
     first = planned(mission, allocator="greedy", traffic="free")
     fixed = dataclasses.replace(

@@ -64,6 +64,7 @@ def test_the_command_in_no_time(mission, plan, tmp_path, monkeypatch, capsys):
     assert (said["cut_short"], said["smallest"]) == (True, [])
 
 
+@pytest.mark.long
 def test_a_table_of_very_many_reasons_is_not_printed(plan):
     robots = [Robot(id=f"r{k:02}", position=(0, k), work_capacity=0) for k in range(60)]
     many = Mission(robots=robots, tasks=[Task(id=f"t{k:02}", position=(10, k)) for k in range(60)])

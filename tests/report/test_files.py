@@ -9,6 +9,7 @@ from muster.report import plot_gantt, plot_routes, save_figure
 from muster.report.figures.files import check_suffix
 
 
+@pytest.mark.long
 def test_png_shows_the_robots_colour_and_is_mostly_white(mission, plan, verdict, tmp_path):
     from matplotlib.image import imread
 
@@ -33,7 +34,7 @@ def test_pdf(mission, plan, verdict, tmp_path):
     assert b"/CreationDate" not in data
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_the_same_picture_gives_the_same_bytes(mission, plan, verdict, tmp_path, suffix):
     for name in ("one", "two"):
@@ -41,6 +42,7 @@ def test_the_same_picture_gives_the_same_bytes(mission, plan, verdict, tmp_path,
     assert (tmp_path / f"one.{suffix}").read_bytes() == (tmp_path / f"two.{suffix}").read_bytes()
 
 
+@pytest.mark.long
 def test_figures_and_axes_of_subfigures_are_written_whole(mission, plan, verdict, tmp_path):
     from matplotlib.figure import Figure
     from matplotlib.image import imread
@@ -79,6 +81,7 @@ def test_a_path_that_cannot_be_written_is_one_line(mission, plan, verdict, tmp_p
     assert str(caught.value) == f"{path}: No such file or directory; expected a path that can be written"
 
 
+@pytest.mark.long
 def test_importing_report_does_not_import_matplotlib_and_drawing_not_pyplot():
     code = """
 import sys

@@ -16,7 +16,7 @@ pytest.importorskip("mcap")
 pytest.importorskip("shapely")
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["31T-6R", "floor", "yard"])
 def test_tracks_tasks_and_map(name, tmp_path, drawn):
     mission = shipped(name)

@@ -288,6 +288,7 @@ def test_many_robots_differ_in_more_than_colour(crowd, drawn):
     assert len(looks) == 20
 
 
+@pytest.mark.long
 def test_a_large_mission_is_simplified(crowd, drawn):
     mission, plan = crowd(2_000, 200)
     ax = plot_routes(mission, plan, verify(mission, plan))

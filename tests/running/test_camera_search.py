@@ -81,6 +81,7 @@ def test_what_is_found_before_its_robot_has_joined_is_refused_and_the_mission_go
     assert [find.task for find in simulation.camera_search.found] == [None, None]
 
 
+@pytest.mark.long
 def test_runs_are_the_same_by_seed():
     """For those in the physics world see tests/muster_control/runs/test_again_in_worlds.py."""
     noise = Noise(position_m=0.03, heading_rad=math.radians(1), attitude_rad=math.radians(1))
@@ -89,6 +90,7 @@ def test_runs_are_the_same_by_seed():
     assert one.found[0].position != other.found[0].position
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seeds", [2, pytest.param(6, marks=pytest.mark.long)])
 def test_estimates_err_as_sure_as_they_say(seeds):
     noise = Noise(position_m=0.05, heading_rad=math.radians(1), attitude_rad=math.radians(1))

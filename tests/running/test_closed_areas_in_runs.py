@@ -28,6 +28,7 @@ class Depths:
         return lambda *_: None  # of nothing else
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seeds", [range(12), pytest.param(range(12, 120), marks=pytest.mark.long)])
 def test_no_robot_enters_a_closed_area(seeds):
     runs = 0

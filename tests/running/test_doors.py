@@ -84,6 +84,7 @@ def test_what_lies_behind_a_door_that_stays_closed_is_lost_with_its_reason(traff
     assert entered(poses, SOUTH) == np.inf
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("traffic", ["reserve", "free"])
 @pytest.mark.parametrize("closes_s", [9.5, 10.5, 11.5])
 def test_who_works_when_a_door_closes_goes_another_way_afterwards(closes_s, traffic, tmp_path):
@@ -115,6 +116,7 @@ def test_a_door_closes_when_nobody_is_in_it(tmp_path):
     assert set(simulation.result().tasks_done) == {"near", "far"}  # it went on and out
 
 
+@pytest.mark.long
 def test_in_the_physics_world_a_door_is_a_wall_while_it_is_closed(tmp_path):
     if find_spec("mujoco") is None:  # not imported here: first it must be said how it draws
         pytest.skip("the extra `physics` is not installed")

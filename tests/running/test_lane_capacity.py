@@ -40,6 +40,7 @@ def most_between(poses):
     return inside.sum(axis=1).max()
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("at_once", [True, False])
 @pytest.mark.parametrize("capacity", [1, 2])
 def test_a_lane_is_left_before_one_too_many_enters_it(capacity, at_once, tmp_path, monkeypatch):

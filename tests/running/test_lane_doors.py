@@ -35,6 +35,7 @@ def places(site, lane, closes_s, kinematics, tmp_path):
     return times, np.array([places[:, :2] for _, places in poses.steps])
 
 
+@pytest.mark.long(keep=5)
 @pytest.mark.parametrize("kinematics", ["holonomic", "differential-drive"])
 @pytest.mark.parametrize("closes_s", [1, 3, 6])
 @pytest.mark.parametrize("lane", ["both_ways: true", "both_ways: false", "capacity: 1"])

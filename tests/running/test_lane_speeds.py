@@ -26,6 +26,7 @@ lanes:
 """
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("kinematics", ["holonomic", "differential-drive"])
 @pytest.mark.parametrize("world", ["kinematic", "physics"])
 def test_nobody_is_faster_on_a_lane_than_it_allows(world, kinematics, tmp_path):

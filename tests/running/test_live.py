@@ -201,6 +201,7 @@ def test_the_clock_of_a_mission_begins_with_it(tmp_path):
     assert recording.duration_s - begun_s == pytest.approx(report.mission_time_s)
 
 
+@pytest.mark.long
 def test_a_fleet_passes_a_door_in_the_order_of_one_plan():
     """The robots' own avoidance is the local layer: nobody touches, and all get through."""
     there = scenes.one_way_door("differential-drive", 0, 8)

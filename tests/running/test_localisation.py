@@ -50,7 +50,7 @@ def off_at_the_end(world, localise, *, noise=SLIPS, pose=None, robot=None, seed=
     return math.dist(truth[:2], SQUARE[-1]), math.dist(truth, robots.ports["r"].telemetry().position)
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("world", WORLDS)
 def test_odometry_leads_astray_and_lasers_back(world):
     off, _ = off_at_the_end(world, None)
@@ -61,6 +61,7 @@ def test_odometry_leads_astray_and_lasers_back(world):
         assert error < (0.08 if "rtk" in localise else 0.03)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("world", WORLDS)
 def test_tags_bring_a_drone_back(world):
     drone = Robot(
@@ -77,6 +78,7 @@ def test_tags_bring_a_drone_back(world):
     assert back < 0.05
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("world", WORLDS)
 def test_who_steers_by_its_true_pose_goes_where_it_is_sent(world):
     """Its telemetry has the estimate all the same."""
@@ -187,6 +189,7 @@ def test_a_pose_that_is_none():
         with_state_estimation(KinematicWorld(mission), mission, pose="truth")
 
 
+@pytest.mark.long
 def test_command_python_and_server_settings_mean_the_same():
     """The command's texts, Python's numbers and a server's JSON name the same sensors."""
     texts = {"odometry": {}, "motion-capture": {"robot": "r_1", "turn_deg": "35"}}

@@ -73,6 +73,7 @@ def flown(mission, fleet, **how):
     return muster.carry_out(mission, muster.solve(mission, "greedy"), fleet, unknown=True, **how)
 
 
+@pytest.mark.long
 def test_a_team_goes_by_what_its_robots_map_and_touches_nothing():
     mission = room(*POCKET, tasks=[(11.0, 4.0), (4.5, 4.0), (8.0, 1.0)], robots=2)
     fleet = MappingRobots(mission)
@@ -103,6 +104,7 @@ def test_what_one_robot_has_mapped_another_knows_from_the_beginning():
     assert nearest_m[1] > 0.1  # of the wall's width nobody knows yet
 
 
+@pytest.mark.long
 def test_what_maps_prove_to_be_walled_in_is_unreachable():
     walls = ((8, 2, 3, 0.3), (8, 5, 3, 0.3), (8, 2, 0.3, 3.3), (11, 2, 0.3, 3.3))
     mission = room(*walls, tasks=[(9.5, 3.5), (11.5, 7.0)])
@@ -111,6 +113,7 @@ def test_what_maps_prove_to_be_walled_in_is_unreachable():
     assert "unreachable" in dict(report.tasks_lost)["t_0"]
 
 
+@pytest.mark.long
 def test_frontiers_of_the_merged_map_become_tasks_and_the_map_is_saved(tmp_path):
     mission, file = room((6.0, 1.0, 0.3, 7.0), tasks=[(2.0, 1.0)], robots=2), tmp_path / "merged.yaml"
     report = flown(mission, MappingRobots(mission), explore=True, save_map=file)
@@ -132,6 +135,7 @@ def test_a_robot_that_joins_goes_by_the_map_and_adds_its_own():
     assert fleet.least_m > 0.99 * 0.2
 
 
+@pytest.mark.long
 def test_robots_that_meet_do_not_become_obstacles_of_each_other():
     mission = room(tasks=[(11.0, 2.5)], robots=2)
     mission = replace(mission, tasks=(replace(mission.tasks[0], only_robots=("r_0",)),))

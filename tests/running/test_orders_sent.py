@@ -67,7 +67,7 @@ def test_a_fleet_on_duty_without_tasks_gets_no_orders():
     assert (len(fleet.orders), fleet.repeated) == (5, [])
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize(("scene", "count"), [("corridor", 4), ("one_way_door", 8), ("two_way_door", 6), ("aisles", 4)])
 def test_where_traffic_is_reserved_robots_are_sent_on_sparingly(scene, count):
     there = getattr(scenes, scene)("differential-drive", 1, count)

@@ -29,6 +29,7 @@ def one_way_loop(**rules):
     return Mission(rules=Rules(objective="makespan", **rules), lanes=LOOP, robots=robots, tasks=tasks)
 
 
+@pytest.mark.long(keep=3)
 @pytest.mark.parametrize("allocator", ["search", "greedy", "auction", "consensus-bundle", "market", "genetic"])
 def test_allocators_plan_along_one_way_lanes(allocator):
     mission = one_way_loop()
@@ -67,6 +68,7 @@ def alone(mission):
     return replace(mission, robots=(robot,), tasks=tasks)
 
 
+@pytest.mark.long
 @settings(max_examples=15)
 @given(mission=missions(kinds=("ground",), limits=LIMITS[1:], most=1).map(alone))
 def test_a_lone_robot_takes_the_time_that_is_planned(mission):

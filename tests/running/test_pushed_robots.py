@@ -43,6 +43,7 @@ def live(there, pushes=(), traffic="reserve", told=()):
     return run, fleet
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("traffic", ["reserve", "free"])
 @pytest.mark.parametrize(
     "pushes",

@@ -133,6 +133,7 @@ def test_a_world_declares_nothing_that_there_is_not():
         declares(settings=(), abilities=("film",))
 
 
+@pytest.mark.long
 def test_a_world_without_cameras_refuses_tags(added):
     class Blind:
         """Passes on all of the kinematic world but its cameras."""

@@ -37,6 +37,7 @@ def test_allocators_that_keep_fixed_tasks_plan_again_themselves_and_others_leave
         Reallocation(travel=travel_of(muster.load("6T-2R")), allocator=MARKET)
 
 
+@pytest.mark.long
 def test_a_mission_goes_on_by_the_allocator_that_planned_it():
     """The second robot's failure leaves work that greedy gives to others than search does."""
     mission = muster.load("31T-6R50")

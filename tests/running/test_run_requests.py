@@ -187,7 +187,7 @@ def plain(report):
     return data
 
 
-@pytest.mark.long(keep=4)
+@pytest.mark.long
 @pytest.mark.parametrize("row", [pytest.param(given(row), id=str(k)) for k, row in enumerate(ROWS)])
 def test_the_doors_answer_alike(row, plan, files, capsys):
     if row.get("world") == "physics" and find_spec("mujoco") is None:
@@ -198,6 +198,7 @@ def test_the_doors_answer_alike(row, plan, files, capsys):
     assert by_server(plan, row) == python
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fields", [{"unknown": True}, {"unknown": True, "explore": True, "seed": 3}], ids=len)
 def test_the_doors_answer_alike_where_robots_have_no_map(fields, tmp_path, capsys, monkeypatch):
     wall = Zone(polygon=((2.0, -1.0), (2.3, -1.0), (2.3, 3.0), (2.0, 3.0)), forbidden_to=("ground", "air"))

@@ -85,7 +85,7 @@ SHIPPED = {
 }
 
 
-@pytest.mark.long(keep=3)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(
     ("name", "robot", "task"), [(name, *pair) for name, pairs in SHIPPED.items() for pair in pairs]
 )
@@ -108,6 +108,7 @@ DELAYED = [
 ]
 
 
+@pytest.mark.long(keep=5)
 @pytest.mark.parametrize("one", DELAYED, ids=lambda task: task.id)
 @pytest.mark.parametrize("at_s", [1.0, None])
 def test_a_delay_comes_on_top_of_what_the_work_takes(one, at_s):
@@ -195,6 +196,7 @@ def test_one_that_returns_before_it_is_available_waits_until_then():
     assert report.starts_s["there"] == pytest.approx(17, abs=0.5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("iterations", [300, pytest.param(2000, marks=pytest.mark.long)])
 def test_depot_is_carried_out_as_planned_and_whole_whatever_happens(iterations):
     """All actions over a map in space, several robots at once; then with a robot that fails and a task that appears."""

@@ -17,6 +17,7 @@ from muster_control.client.handles import report_from
 from muster_studies.benches.standing import fleet, most_per_hour, on_duty, orders
 
 
+@pytest.mark.long
 def test_half_a_minute_of_twenty_robots_with_a_burst_loses_nothing():
     shift = on_duty(fleet(1), 1, 30.0, burst_at_s=10.0)
     seen = shift.orders
@@ -27,6 +28,7 @@ def test_half_a_minute_of_twenty_robots_with_a_burst_loses_nothing():
     assert seen.done_per_hour < most_per_hour(seen.taken)
 
 
+@pytest.mark.long
 def test_the_same_orders_are_done_in_the_same_way_each_time():
     def carried_out():
         mission = replace(fleet(2), robots=fleet(2).robots[:5])

@@ -64,7 +64,7 @@ def watched(name, world, noise=NOISE, seed=1):
     return mission, hearing
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("world", WORLDS)
 @pytest.mark.parametrize("name", ["6T-2R", "auction-1"])
 def test_fused_poses_are_nearer_to_the_truth_by_more_than_half(name, world):
@@ -84,6 +84,7 @@ def test_fused_poses_are_nearer_to_the_truth_by_more_than_half(name, world):
         assert low < sum(nis) < high
 
 
+@pytest.mark.long
 def test_filters_learn_the_bias_of_gyros():
     noise = replace(NOISE, gyro_bias_radps=0.02, gyro_radps=0.005)
     _, hearing = watched("11T-2R", "kinematic", noise)
@@ -98,7 +99,7 @@ def test_all_tasks_are_done_where_robots_err(name):
     all_are_done_by_robots_that_err(name, "kinematic")
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @needs_physics
 @pytest.mark.parametrize("name", ["6T-2R-actions", "auction-1"])
 def test_all_tasks_are_done_where_bodies_err(name):
@@ -141,6 +142,7 @@ def test_who_says_where_it_is_says_the_fused_place():
         assert math.dist(place, truth[name]) < 0.1
 
 
+@pytest.mark.long
 def test_who_joins_is_fused_too():
     mission = replace(muster.load("6T-2R"), events=())
     plan = Plan(routes=(Route("r_0", tuple(task.id for task in mission.tasks)), Route("r_1", ())))

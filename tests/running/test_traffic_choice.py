@@ -54,6 +54,7 @@ def test_given_lanes_lead_a_single_robot_too(hall):
     assert "no lanes lead from (0, 0) to (-5, 0)" in dict(report.tasks_lost)["a"]
 
 
+@pytest.mark.long
 def test_a_small_robot_passes_a_door_that_is_too_narrow_for_the_wide_one():
     walls = [(x, y) for x, gap in ((-2.0, 0.75), (3.0, 0.45)) for y in ((-6.0, -gap), (gap, 6.0))]
     zones = tuple(Zone(polygon=((x - 0.2, a), (x + 0.2, a), (x + 0.2, b), (x - 0.2, b))) for x, (a, b) in walls)
@@ -129,6 +130,7 @@ def test_where_there_is_room_the_faster_one_by_forecast_is_chosen(crossing, take
     assert len(asked) == 1
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("radius_m", [0.2, 1.2])
 def test_a_run_in_auto_takes_as_long_as_the_faster_mode(crossing, radius_m):
     mission, plan = crossing

@@ -102,6 +102,7 @@ def test_no_fly_zones_and_doors_are_known_by_rule():
     assert run.result().tasks_done == ()
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("world", ["kinematic", "physics"])
 def test_the_border_of_a_no_fly_zone_is_no_obstacle_to_those_below(world):
     if world == "physics":
@@ -151,6 +152,7 @@ def test_frontiers_become_tasks_until_all_is_explored():
     assert least > 0.99
 
 
+@pytest.mark.long
 def test_what_cameras_find_while_robots_explore_becomes_a_task():
     """Frontiers are tasks of themselves where there is something to be found; no task of the mission leads there."""
     mission = room((4.0, 0.0, 0.3, 6.0), (8.0, 2.0, 0.3, 6.0), tasks=[])
@@ -193,6 +195,7 @@ def test_events_tell_the_map_from_its_beginning_and_the_state_folds_it():
     assert restored(mission, checkpoint_of(run.state)).explored == explored
 
 
+@pytest.mark.long
 def test_the_map_that_was_built_is_saved_as_a_map_of_ros(tmp_path):
     mission = load("market-rescue-arena")
     file = tmp_path / "built.yaml"
@@ -229,6 +232,7 @@ def test_what_does_not_go_together_is_refused():
         simulate(mission, solve(mission, "greedy"), unknown=True)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [2, *(pytest.param(k, marks=pytest.mark.long) for k in range(50) if k != 2)])
 def test_in_random_worlds_all_that_can_be_reached_is_done(seed):
     outcome = carried_out(random_world(seed))
@@ -245,6 +249,7 @@ def test_five_robots_explore_in_at_most_a_third_of_the_time_of_one(seed):
     assert five.explored_m2 == pytest.approx(one.explored_m2, rel=0.03)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("mission", "explore"),
     [

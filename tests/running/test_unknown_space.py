@@ -48,6 +48,7 @@ def carried_out(mission, until_s=600.0, **how):
     return run, least, steps
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("world", ["kinematic", pytest.param("physics", marks=pytest.mark.long)])
 def test_a_drone_finds_its_way_over_a_wall_and_around_a_tower(world):
     if world == "physics":
@@ -66,6 +67,7 @@ def test_a_drone_finds_its_way_over_a_wall_and_around_a_tower(world):
     assert report.ground.driven_m < 1.5 * report.ground.with_map_m
 
 
+@pytest.mark.long
 def test_robots_pass_below_a_bridge_that_those_in_the_air_see_as_one():
     mission = yard(
         block(6, 0, 1.5, 8, floor=1.2, ceiling=3.0),
@@ -79,6 +81,7 @@ def test_robots_pass_below_a_bridge_that_those_in_the_air_see_as_one():
     assert run._ground.map.air.seen.occupied.any()
 
 
+@pytest.mark.long
 def test_a_bridge_lower_than_a_robot_stops_it_alone():
     tall = Robot(id="tall", position=(1.0, 4.0, 0.0), radius_m=0.5, speed_mps=1.0)
     mission = yard(
@@ -109,6 +112,7 @@ def test_drones_stay_below_a_ceiling():
     assert steps[..., 2].max() < 2.5
 
 
+@pytest.mark.long
 def test_a_no_fly_zone_is_known_and_no_obstacle_on_the_ground():
     zone = Zone(polygon=((5.0, 0.0), (7.0, 0.0), (7.0, 6.0), (5.0, 6.0)), forbidden_to=("air",))
     mission = yard(
@@ -151,6 +155,7 @@ def test_what_drones_see_from_above_is_known_on_the_ground_and_the_reverse():
     assert (np.abs(points[:, 0] - 9.0) < 0.05).sum() > 50
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [pytest.param(k, marks=[] if k == 7 else pytest.mark.long) for k in range(12)])
 def test_random_worlds_in_space(seed):
     run, least, _ = carried_out(random_space(seed))
@@ -169,6 +174,7 @@ def test_five_drones_explore_a_building_in_a_fraction_of_the_time_of_one():
     assert min(report.ground.explored_m2 for report in reports) > 0.9 * 40 * 30
 
 
+@pytest.mark.long
 def test_the_map_that_was_built_is_a_mission_that_muster_reads(tmp_path):
     mission = yard(
         block(6, 0, 1.0, 5, ceiling=2.0),

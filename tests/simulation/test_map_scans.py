@@ -43,6 +43,7 @@ def last_error_m(localise, seed):
     return math.dist(simulation.world.positions[0, :2], mission.tasks[-1].position)
 
 
+@pytest.mark.long
 def test_scans_bring_a_robot_to_its_goals():
     assert last_error_m("odometry,scans", 0) < 0.15
 

@@ -102,7 +102,7 @@ def test_the_velocity_that_is_said_is_what_odometry_counts(name, given):
     assert way > 1.05 * world.distances_m["r"]
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.skipif(find_spec("mujoco") is None, reason="needs the extra `physics`")
 @pytest.mark.parametrize("name", ["6T-2R", "11T-2R-actions"])
 def test_encoders_count_the_true_way(name):
@@ -128,7 +128,7 @@ def test_a_wheel_that_turns_on_the_spot_counts_no_way():
     assert world.ports["r"].telemetry().odometry_m < 0.01
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.skipif(find_spec("mujoco") is None, reason="needs the extra `physics`")
 @pytest.mark.parametrize("given", [WAFFLE, DRONE, {"radius_m": 0.3, "speed_mps": 0.3}])
 def test_motors_of_uneven_strength_shake_a_robot_that_still_arrives(given):
@@ -160,7 +160,7 @@ def test_a_negative_error_is_told(name):
         Noise(**{name: -1})
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("name", WORLDS)
 def test_all_tasks_are_done_with_all_errors_at_once(name):
     """No robot touches another, though motors push unevenly."""

@@ -34,6 +34,7 @@ def test_robots_wait_for_a_window_and_begin_together(world, mission):
     assert report.contacts == 0
 
 
+@pytest.mark.long(keep=1)
 def test_a_team_reforms_when_a_member_fails_and_the_record_has_it_all(world, mission, tmp_path):
     pytest.importorskip("mcap")
     from muster.report.record import read_record

@@ -42,6 +42,7 @@ def test_a_trajectory_passes_its_way_points_when_it_says():
     assert speeds[round(made.times[1] / STEP_S) - 1] > 0.3
 
 
+@pytest.mark.long
 @settings(max_examples=30, deadline=None)
 @given(
     kind=st.sampled_from(KINDS),
@@ -104,6 +105,7 @@ def test_a_robot_waits_and_goes_on_where_another_stands_on_its_way():
     assert not world.contacts
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("world", ["kinematic", "physics"])
 def test_a_mission_is_carried_out_on_trajectories(world):
     if world == "physics" and find_spec("mujoco") is None:  # not imported here: first it must be said how it draws
@@ -114,6 +116,7 @@ def test_a_mission_is_carried_out_on_trajectories(world):
     assert (len(report.tasks_done), report.contacts) == (6, 0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("seed", "tasks"), [(0, 3), *(pytest.param(seed, None, marks=pytest.mark.long) for seed in range(2))]
 )

@@ -39,6 +39,7 @@ def test_without_obstacles_it_goes_straight():
     assert found.ways == 1
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("turning_radius_m", [None, 0.1])
 def test_it_gets_round_boxes_and_touches_none(seed, turning_radius_m):

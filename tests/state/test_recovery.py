@@ -20,6 +20,7 @@ def plan():
     return muster.solve(site(), "search", iterations=50, seed=1)
 
 
+@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("kind", SAMPLES)
 @pytest.mark.parametrize("then_s", [3.0, 12.0, 30.0])
 def test_what_an_event_has_changed_is_known_after_a_crash(plan, kind, then_s):
@@ -49,6 +50,7 @@ def test_whatever_has_happened_is_known_after_a_crash(plan, seed):
     assert known(run.recovered) == known(run.executor.state)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(3))
 def test_a_checkpoint_after_any_entry_and_what_follows_is_as_good_as_the_whole_log(plan, seed):
     draw = random.Random(seed)

@@ -33,6 +33,7 @@ def parts(few, chunk, every):
     return [range(few), *(pytest.param(seeds, marks=pytest.mark.long) for seeds in rest)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seeds", parts(3, 15, 45), ids=str)
 def test_judge_bounds_reasons_and_remedies_agree_with_every_plan(seeds):
     reports = [trial(seed, planned=False) for seed in seeds]
@@ -52,6 +53,7 @@ def test_the_exact_solver_finds_the_best_of_every_plan(seeds):
     assert failures == {}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seeds", parts(12, 120, 240), ids=str)
 def test_the_judge_agrees_with_the_meaning_of_rules_that_planning_does_not_know(seeds):
     reports = [judged_trial(seed) for seed in seeds]
@@ -85,6 +87,7 @@ def test_a_judge_that_errs_is_found(monkeypatch):
     assert any("but it breaks {'time'}" in failure for failure in judged_trial(6).failures)
 
 
+@pytest.mark.long
 def test_a_trial_that_goes_wrong_is_a_failure(monkeypatch):
     monkeypatch.setattr("tests.timed_missions.trial.lower_bound", lambda problem: 1e9)
     failing = (trial(seed, planned=False).failures for seed in range(100))

@@ -10,6 +10,7 @@ from tools.suites import alone
 PACKAGES = {path.parent.name for path in (ROOT / "src").glob("*/__init__.py")}
 
 
+@pytest.mark.long
 def test_the_sdist_has_the_sources_of_all_packages(tmp_path, monkeypatch):
     build = pytest.importorskip("scikit_build_core.build")
     monkeypatch.chdir(ROOT)

@@ -127,6 +127,7 @@ class TestTouched:
     def test_sources_touch_the_tests_that_executed_them(self):
         assert touched.touched(["src/muster/b.py"], MAP).tests == set(MAP) - {"tests/a/test_one.py::test_near"}
 
+    @pytest.mark.long
     def test_a_source_without_functions_touches_what_executes_its_importers(self):
         importer = "src/muster/allocation/registry.py"
         tests = {"tests/x.py::test": Executed(1.0, frozenset({importer}))}
@@ -226,6 +227,7 @@ class TestCI:
         assert sum(command[1] in {campaign.target for campaign in CAMPAIGNS} for command in commands) == len(CAMPAIGNS)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "text",
     ["import pytest\n\npytest.importorskip('no_such_module')\n", "import pytest\n\ndef test_a():\n    pytest.skip()\n"],

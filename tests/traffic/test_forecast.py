@@ -18,7 +18,7 @@ def forecast_of(mission, plan):
     return forecast(mission, {route.robot: route.stops for route in plan.routes}, shared.plan())
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("scene", [scenes.aisles, scenes.dead_ends])
 def test_runs_take_as_long_as_forecast(scene):
     mission = scene("differential-drive", 1, 6)
@@ -32,6 +32,7 @@ def test_runs_take_as_long_as_forecast(scene):
     assert max(one.with_traffic_s for one in told.robots) == pytest.approx(simulation.time_s, rel=0.15)
 
 
+@pytest.mark.long
 def test_robots_without_tasks_stay_where_they_do_not_hinder():
     mission = scenes.one_way_door("holonomic", 0, 4)
     plan = solve(mission, "greedy")

@@ -11,7 +11,7 @@ COUNTS = {"one_way_door": 8, "two_way_door": 6, "corridor": 8, "aisles": 4, "dea
 KINEMATICS = ("holonomic", "differential-drive", "holonomic", "differential-drive", "differential-drive")
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long
 @pytest.mark.parametrize(("scene", "kinematics"), list(zip(COUNTS, KINEMATICS, strict=True)))
 def test_all_get_through(scene, kinematics):
     mission = getattr(scenes, scene)(kinematics, 1, COUNTS[scene])
@@ -24,6 +24,7 @@ def test_all_get_through(scene, kinematics):
     assert (report.contacts, report.tasks_lost) == (0, ())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", [(1, 2), pytest.param((2, 3), marks=pytest.mark.long)], ids=str)
 def test_it_is_the_same_again(scene):
     mission = scenes.aisles("holonomic", *scene)

@@ -71,7 +71,7 @@ def test_a_roadmap_connects_what_the_free_cells_connect(seed):
     assert len({(int(a), int(b)) for a, b in zip(part, group, strict=True)}) == count == len(set(group))
 
 
-@pytest.mark.long(keep=5)
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("seed", range(10))
 def test_a_robot_on_an_edge_touches_no_blocked_cell(seed):
     grid = noisy_grid(seed)
@@ -94,7 +94,7 @@ def walls(seed):
     return [shapely.box(*corner, *(corner + rng.uniform(0.3, 2.5, size=2))) for corner in low]
 
 
-@pytest.mark.long(keep=4)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(10))
 def test_a_roadmap_connects_what_a_region_connects_and_keeps_the_radius(seed):
     obstacles, hall = walls(seed), shapely.box(0, 0, 12, 10)

@@ -134,6 +134,7 @@ def touched(travellers, moves):
     return False
 
 
+@pytest.mark.long
 def test_of_three_sizes_each_gets_as_far_as_its_gaps_let_it():
     """The doors are 2.0, 1.2 and 0.6 m wide."""
     rooms = [(3.0, 1.0), (9.0, 1.0), (15.0, 1.0), (21.0, 1.0)]
@@ -343,6 +344,7 @@ def test_the_world_of_a_mission_with_several_sizes_is_read_once(monkeypatch):
     assert len(read) == 1
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(8))
 def test_rows_along_walls_of_a_grid_repeat_no_point_of_the_layer(seed):
     grid = clumps(seed)

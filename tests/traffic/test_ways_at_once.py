@@ -145,6 +145,7 @@ def test_points_nearer_than_robots_are_wide():
     assert max(judged(roadmap, [one, other], [[other], [one]])[0]) < math.inf
 
 
+@pytest.mark.long
 @settings(max_examples=60)
 @given(seed=st.integers(0, 10**6), settle=st.booleans())
 def test_ways_are_found_where_a_joint_search_finds_some(seed, settle):

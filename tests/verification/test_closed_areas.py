@@ -63,6 +63,7 @@ def test_judge_and_planner_agree_with_places_looked_at_one_by_one(seeds):
     assert min(counts.values()) > len(seeds)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seeds", [range(10), pytest.param(range(10, 60), marks=pytest.mark.long)])
 @pytest.mark.parametrize("allocator", ["greedy", "search", "auction", "consensus-bundle", "genetic"])
 def test_no_plan_enters_a_closed_area(allocator, seeds):

@@ -43,6 +43,7 @@ def test_lengths_and_times_along_lanes_are_the_judges_own(mission):
     assert_judged_alike(mission)
 
 
+@pytest.mark.long
 @settings(max_examples=30)
 @given(mission=missions(with_map=True))
 def test_so_are_they_on_a_map(mission):

@@ -81,6 +81,7 @@ def test_a_grid_anywhere(origin):
     assert metres(space, start, end) == pytest.approx(0.05 * (3 + 2 * math.hypot(0.5, 0.5)), rel=1e-9)
 
 
+@pytest.mark.long(keep=12)
 @pytest.mark.parametrize("seed", range(30))
 def test_random_cells_as_by_brute_force(seed):
     random = np.random.default_rng(seed)
@@ -96,7 +97,7 @@ def test_random_cells_as_by_brute_force(seed):
         assert found == (None if expected is None else pytest.approx(0.1 * expected, rel=1e-8))
 
 
-@pytest.mark.long(keep=4)
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("seed", range(12))
 def test_random_polygons_as_by_brute_force(seed):
     random = np.random.default_rng(seed)

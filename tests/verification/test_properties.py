@@ -4,6 +4,7 @@ import json
 import math
 from dataclasses import dataclass, replace
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -217,6 +218,7 @@ class SlowJudge:
         return sum(abs(u - v) for u in usages for v in usages) / (2 * len(usages) * sum(usages))
 
 
+@pytest.mark.long
 @given(questions())
 def test_the_slow_judge_finds_the_same(question):
     mission, plan = question
@@ -252,6 +254,7 @@ def summary(verdict: Verdict) -> tuple[list[tuple[str, str, str]], list[float]]:
     return found, [-1 if figure is None else figure for figure in figures]
 
 
+@pytest.mark.long
 @given(questions(), st.randoms(use_true_random=False))
 def test_the_order_of_robots_tasks_and_routes_changes_nothing(question, random):
     mission, plan = question
@@ -312,6 +315,7 @@ def test_any_figure_that_is_changed_is_found(question, data):
     assert false.detail.startswith(f"{name}: ")
 
 
+@pytest.mark.long
 @given(questions())
 def test_a_verdict_is_json_without_infinities(question):
     data = verify(*question).as_dict()

@@ -152,6 +152,7 @@ def reasons_judged(seed):
                 yield word, places.is_true(word) and said_of_it.get(word, True), bool(places.left()), verdict
 
 
+@pytest.mark.long(keep=5)
 @pytest.mark.parametrize("seed", range(12))
 def test_no_true_reason_is_rejected_and_false_ones_are_found(seed):
     for word, is_true, could, verdict in reasons_judged(seed):
@@ -160,6 +161,7 @@ def test_no_true_reason_is_rejected_and_false_ones_are_found(seed):
         assert verdict.valid != is_contradicted or verdict.reasons_undecided or (word != "not-chosen" and not could)
 
 
+@pytest.mark.long
 def test_few_reasons_are_left_undecided():
     verdicts = [verdict for seed in range(6) for *_, verdict in reasons_judged(seed)]
     assert sum(verdict.reasons_undecided for verdict in verdicts) <= len(verdicts) / 10

@@ -122,6 +122,7 @@ def test_a_task_that_follows_its_own_prerequisite_is_fine():
     assert times(judge(mission, r=["a", "b"])) == {"a": (1, 1, 2), "b": (3, 3, 4)}
 
 
+@pytest.mark.long
 def test_a_long_chain():
     """Deeper than Python recurses: 5,000 tasks, each waiting for the one before, on the other robot."""
     tasks = {str(k): (0.0, 1.0, [str(k - 1)] if k else []) for k in range(5000)}

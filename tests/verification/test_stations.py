@@ -249,6 +249,7 @@ def test_a_plan_that_states_what_the_judge_found_is_valid_with_every_number_of_s
             assert verify(given, stated).routes == verify(given, bare).routes
 
 
+@pytest.mark.long
 def test_many_visits():
     """Deeper than Python recurses, and in time that grows with their number."""
     given = mission(fleet([f"r{k}" for k in range(40)]), [], [swapper(swap_s=10, slots=3), charger("dock", 5)])

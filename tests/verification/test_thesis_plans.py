@@ -75,6 +75,7 @@ def test_table_3_8_prerequisites():
     assert verdict.makespan_s > verdict.max_usage  # robots wait
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("capacities", "routes", "total", "value"),
     [

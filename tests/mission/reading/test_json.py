@@ -53,7 +53,7 @@ def both(monkeypatch):
 BROKEN = {path: data for path in sorted(FOLDER.glob("*.yaml")) if (data := plain(path)) is not None}
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_shipped_missions_are_the_same(layout, both):
     for path in map(mission_path, mission_names()):

@@ -15,6 +15,7 @@ from muster.mission.reading.yaml_reader import parse_yaml, read_yaml
 from muster.mission.yaml_writer import yaml_text
 
 
+@pytest.mark.long
 @examples(120)
 @given(missions())
 def test_yaml_is_read_back(mission):

@@ -89,6 +89,7 @@ def test_numbering_and_threads_make_no_difference(seed, dimensions):
     assert (np.linalg.norm(found, axis=1) <= 2.0 + 1e-9).all()
 
 
+@pytest.mark.long
 @given(seed=st.integers(0, 10**6), dimensions=st.sampled_from([2, 3]), ranked=st.booleans())
 @settings(max_examples=25)
 def test_a_crowd_never_touches(seed, dimensions, ranked):
@@ -106,6 +107,7 @@ def test_a_crowd_never_touches(seed, dimensions, ranked):
     assert ways.contacts == ()
 
 
+@pytest.mark.long
 @given(seed=st.integers(0, 10**6))
 @settings(max_examples=25)
 def test_walls_are_never_touched(seed):

@@ -154,6 +154,7 @@ def test_hybrid_obstacle_by_hand():
     assert whole == pytest.approx(v_b)
 
 
+@pytest.mark.long
 @given(seed=st.integers(0, 10**6))
 @settings(max_examples=25)
 def test_hybrid_velocities_are_the_nearest_outside_all_obstacles(seed):

@@ -36,6 +36,7 @@ def test_the_cells_touched_are_those_that_share_some_area(shape):
     assert not marked[areas == 0].any()
 
 
+@pytest.mark.long
 @settings(max_examples=40)
 @given(shape=shapes(), resolution=st.floats(0.2, 3))
 def test_free_cells_lie_wholly_in_the_region(shape, resolution):

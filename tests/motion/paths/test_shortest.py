@@ -57,7 +57,7 @@ def without_pinches(blocked):
         blocked[1:, :-1] |= pinches
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(2))
 def test_among_many_corners_nothing_is_shorter(seed):
     """So many that each way is bounded by one over cells, and looked for in an ellipse."""
@@ -94,6 +94,7 @@ def core_length(ways, a, b):
     return np.linalg.norm(np.diff(way, axis=0), axis=1).sum() if len(way) else np.inf
 
 
+@pytest.mark.long
 def test_the_graph_is_built_when_ways_have_looked_around_as_many_corners():
     blocked = np.random.default_rng(7).random((60, 60)) < 0.2
     ways = core.Ways.on_grid(core.GridMap(blocked))

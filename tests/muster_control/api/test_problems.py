@@ -22,6 +22,7 @@ def require_problem(answer, status):
     return found
 
 
+@pytest.mark.long(keep=16)
 @pytest.mark.parametrize(
     ("method", "path", "status"),
     [
@@ -163,6 +164,7 @@ def test_a_request_that_nothing_can_meet_is_refused_at_once(http, yard, asked, s
     assert len(http.get("/jobs").json()) == before
 
 
+@pytest.mark.long
 def test_watchers_change_nothing(guarded, http):
     """Every route that changes something, asked with a body that its description gives as an example."""
     url, tokens = guarded

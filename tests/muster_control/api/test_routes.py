@@ -159,6 +159,7 @@ def test_a_job_is_stopped_with_its_plan(http, yard):
     assert http.post(f"/jobs/{job}/stop").status_code == 409
 
 
+@pytest.mark.long
 def test_a_job_is_followed_and_cancelled(http, yard):
     job = http.post(f"/missions/{yard}/plans", json={"time_limit": 60.0}).json()
     assert job["state"] in ("queued", "running")
@@ -180,6 +181,7 @@ def run(http, plan):
     return begun.json()["id"]
 
 
+@pytest.mark.long
 def test_a_run_has_a_log_and_a_report(http, run):
     entries = http.get(f"/runs/{run}/events").json()
     assert [entry["seq"] for entry in entries] == list(range(1, len(entries) + 1))
@@ -190,6 +192,7 @@ def test_a_run_has_a_log_and_a_report(http, run):
     assert run in [listed["id"] for listed in http.get("/runs").json()]
 
 
+@pytest.mark.long
 def test_a_run_is_acted_upon(http, plan):
     run = http.post("/runs", json={"plan": plan, "speed": 1.0}).json()["id"]
     assert http.get(f"/runs/{run}/report").status_code == 409
@@ -203,11 +206,13 @@ def test_a_run_is_acted_upon(http, plan):
     assert {"run.start", "run.speed", "run.event", "run.cancel"} <= set(verbs)
 
 
+@pytest.mark.long
 def test_settings_of_a_run_name_no_parameters(http, plan):
     refused = http.post("/runs", json={"plan": plan, "settings": {"who": "me"}})
     assert (refused.status_code, refused.json()["error"][:13]) == (400, "who: unknown;")
 
 
+@pytest.mark.long
 def test_a_record_is_looked_at_and_taken_away(http, run):
     assert run in [listed["id"] for listed in http.get("/records").json()]
     page = http.get(f"/records/{run}/page.html")
@@ -226,6 +231,7 @@ def test_what_the_server_is(http):
     assert "search" in [allocator["name"] for allocator in http.get("/allocators").json()]
 
 
+@pytest.mark.long
 def test_the_description_lists_every_route_and_needs_nothing_from_elsewhere(http):
     described = http.get("/openapi.json").json()
     assert described["openapi"].startswith("3.1")
@@ -236,6 +242,7 @@ def test_the_description_lists_every_route_and_needs_nothing_from_elsewhere(http
     assert not re.findall(r"""(?:src|href)=["']?(?:https?:)?//""", page)
 
 
+@pytest.mark.long
 def test_the_same_request_with_the_same_key_makes_nothing_again(http, yard, plan):
     for path, body, other in (
         ("/runs", {"plan": plan, "speed": None}, {"plan": plan, "speed": 2.0}),

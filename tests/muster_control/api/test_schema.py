@@ -59,7 +59,7 @@ def busy(tmp_path_factory):
         yield f"{url}/api/v1"
 
 
-@pytest.mark.long(keep=8)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("label", LABELS)
 @schemathesis.pytest.from_fixture("description").include(lambda it: it.operation.label in _under_test).parametrize()
 @settings(

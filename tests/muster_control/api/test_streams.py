@@ -28,6 +28,7 @@ def test_a_job_is_told_until_it_is_over(url, http, yard):
     assert told(url, f"/jobs/{job}/stream") == messages[-1:]
 
 
+@pytest.mark.long
 def test_a_run_is_told_while_it_goes_on_and_afterwards(url, http, plan):
     run = http.post("/runs", json={"plan": plan, "speed": None}).json()["id"]
     live, later = told(url, f"/runs/{run}/stream"), told(url, f"/runs/{run}/stream")
@@ -59,6 +60,7 @@ def test_an_unknown_parameter_is_refused_as_over_http(url, http, plan):
     assert "afer" in json.loads(refused.value.response.body)["error"]
 
 
+@pytest.mark.long
 def test_nobody_listens_without_a_token(guarded):
     url, tokens = guarded
     with pytest.raises(InvalidStatus) as refused:
@@ -69,6 +71,7 @@ def test_nobody_listens_without_a_token(guarded):
     assert refused.value.response.status_code == 404
 
 
+@pytest.mark.long
 def test_orders_are_taken_over_a_websocket_and_answered_each(url, http, plan):
     settings = {"stay": True, "until_s": 60.0}
     run = http.post("/runs", json={"plan": plan, "speed": 20.0, "settings": settings}).json()["id"]
@@ -90,6 +93,7 @@ def test_orders_are_taken_over_a_websocket_and_answered_each(url, http, plan):
     assert http.get(f"/runs/{run}/report").json()["orders"]["taken"] == 2
 
 
+@pytest.mark.long
 def test_orders_to_a_run_that_is_over_or_not_there_are_refused_as_over_http(url, http, plan):
     run = http.post("/runs", json={"plan": plan, "speed": None}).json()["id"]
     told(url, f"/runs/{run}/stream")

@@ -161,14 +161,17 @@ def differences(mission, entries):
         state.apply(made)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [*range(3), *(pytest.param(k, marks=pytest.mark.long) for k in range(3, 100))])
 def test_both_know_the_same_after_events_in_any_order(both, plan, seed):  # noqa: F811
     both(tied_site(), list(Drawn(seed, plan).entries(300)))
 
 
+@pytest.mark.long
 def test_random_events_are_of_all_kinds(plan):  # noqa: F811
     assert {entry["kind"] for seed in range(18) for entry in Drawn(seed, plan).entries(300)} == set(KINDS)
 
 
+@pytest.mark.long
 def test_a_robot_that_is_out_is_known_by_the_kinds_of_python():
     assert OUT.keys() == {kind for kind, made in KINDS.items() if issubclass(made, KINDS["robot_fails"].__mro__[1])}

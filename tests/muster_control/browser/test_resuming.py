@@ -5,7 +5,7 @@ from tests.muster_control.browser.conftest import Watched
 
 from muster_control.client import Client
 
-pytestmark = pytest.mark.xdist_group("resuming")
+pytestmark = [pytest.mark.long, pytest.mark.xdist_group("resuming")]
 
 TAKE = """message => {
   const { view } = getElement(Number(document.querySelector('.muster-live-frame').id.slice(1)));

@@ -296,6 +296,7 @@ def test_it_is_taken_away(watched, page, tmp_path):
             check(file.read_text())
 
 
+@pytest.mark.long
 def test_drones_are_seen_in_space_and_a_run_is_ended(watched, page):
     with Client(watched.origin) as client:
         run = client.start(client.plan("auction-1", allocator="greedy").wait(), speed=0.5).id

@@ -12,7 +12,7 @@ from tests.muster_control.serving import served
 from muster_control.client import Client
 from muster_control.work.turns import Turns
 
-pytestmark = pytest.mark.xdist_group("watching")
+pytestmark = [pytest.mark.long, pytest.mark.xdist_group("watching")]
 
 MISSION = "6T-2R"
 COMMANDS = re.compile(

@@ -29,6 +29,7 @@ def url(tmp_path, monkeypatch):
     return url
 
 
+@pytest.mark.long
 def test_a_full_disk_behind_standard_output(url):
     with Path("/dev/full").open("w") as full:
         command = [sys.executable, "-m", "muster.cli", "db", "info", "--db", url]

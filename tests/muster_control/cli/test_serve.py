@@ -57,6 +57,7 @@ def served(folder, *words):
         process.communicate()
 
 
+@pytest.mark.long
 def test_from_start_to_end(tmp_path):
     with served(tmp_path, "6T-2R") as server:
         (root,) = re.fullmatch(r"mission control: (http://127\.0\.0\.1:\d+)/plan/6T-2R\n", server.line).groups()
@@ -83,6 +84,7 @@ def test_a_mission_file_is_uploaded_once(tmp_path):
             assert got(again.address).status_code == 200
 
 
+@pytest.mark.long
 def test_for_others(tmp_path):
     """With tokens beyond loopback: who has none gets nothing; logs have no secrets; slow and large headers end."""
     from muster.cli.main import run

@@ -47,6 +47,7 @@ def test_a_plan_is_as_here(folder, muster, url):
     assert comparable("there.json") == comparable("here.json")
 
 
+@pytest.mark.long
 def test_rewire_fixed_and_bound_are_as_here(folder, muster, url):
     assert muster("solve", "31T-6R50", "--iterations", 300, "-o", "first.json")[0] == 0
     fixed = json.loads(Path("first.json").read_text(encoding="utf-8"))
@@ -90,6 +91,7 @@ def test_a_shipped_mission_is_planned_as_it_is(muster, url):
         assert [entry.shipped for entry in control.missions.list() if entry.name == "6T-2R"] == [True]
 
 
+@pytest.mark.long
 def test_a_plan_is_judged_and_explained_as_here(plan, muster, url):
     for verb in ("verify", "explain"):
         here, there = (muster(verb, "yard.yaml", plan, "--format", "json", *more) for more in ((), ("--server", url)))
@@ -138,6 +140,7 @@ def test_a_simulation_is_as_here(plan, muster, url):
     assert "search has no parameter hott" in err
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("more", [("--drain", "1.1"), pytest.param(("--orders", "o.jsonl"), marks=pytest.mark.long)])
 def test_conditions_of_a_run_are_those_of_the_command(folder, muster, url, more):
     order = {"at_s": 1.0, "new_task": {"id": "ordered", "type": "D", "position": [2, 2]}}
@@ -167,6 +170,7 @@ def test_drones_in_wind_fly_there_as_here(folder, muster, url):
     assert there == here
 
 
+@pytest.mark.long
 def test_a_record_comes_back(plan, muster, url):
     code, _, err = muster("simulate", "yard.yaml", "--plan", plan, "--record", "r.mcap", "--server", url)
     assert (code, err) == (0, "")
@@ -192,6 +196,7 @@ def test_missions_of_the_server_are_listed(muster, url):
     assert "31T-6R50" in muster("missions", "--server", url)[1]
 
 
+@pytest.mark.long
 def test_files_are_sent_with_a_mission(muster, url):
     text, files = packed_mission(load("floor"))
     assert sorted(files) == ["floor-plan.png", "floor-plan.yaml"]
@@ -231,6 +236,7 @@ def test_what_a_server_cannot_do_in_a_simulation_is_refused_with_the_reason(fold
         assert err.startswith(said)
 
 
+@pytest.mark.long(keep=20)
 @pytest.mark.parametrize(
     ("server", "said"),
     [
@@ -258,6 +264,7 @@ def test_an_environment_that_cannot_be_followed(muster, monkeypatch, name, value
     assert name in err
 
 
+@pytest.mark.long
 def test_tokens(folder, muster, tmp_path, monkeypatch):
     tokens = {role: new_token() for role in ("watch", "command")}
     lines = [line_of(role, role, token) for role, token in tokens.items()]
@@ -281,6 +288,7 @@ def test_a_token_needs_a_server(folder, muster):
     assert muster("solve", "yard.yaml", "--token-file", "t") == (2, "", said)
 
 
+@pytest.mark.long
 def test_ctrl_c_keeps_the_best_plan_as_here(folder, url):
     environment = {name: value for name, value in os.environ.items() if name != "MUSTER_TOKEN"}
     with Client(url) as control:
@@ -327,6 +335,7 @@ class Interrupted:
         self.told.append("cancel")
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(
     ("begun", "told", "said"),
     [
@@ -384,6 +393,7 @@ def test_ctrl_c_as_a_run_ends_is_no_error(before):
     assert carried.waited
 
 
+@pytest.mark.long
 def test_the_client_imports_no_part_of_the_server_nor_its_libraries():
     heavy = ("fastapi", "nicegui", "sqlalchemy", "scipy", "shapely", "matplotlib", "muster_control.api")
     code = f"import sys, muster_control.client; print([m for m in {heavy} if m in sys.modules])"

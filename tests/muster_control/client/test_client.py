@@ -82,6 +82,7 @@ def test_a_verdict_is_that_of_the_judge(control):
         assert control.plans.verdict(given) == muster.verify(muster.load("6T-2R"), plan)
 
 
+@pytest.mark.long
 def test_a_report_is_that_of_a_simulation(control):
     plan = control.plan("6T-2R", iterations=20).wait()
     run = control.start(plan, speed=None, seed=1)
@@ -93,6 +94,7 @@ def test_a_report_is_that_of_a_simulation(control):
     assert report.tasks_lost == here.tasks_lost
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("options", "message"),
     [

@@ -57,6 +57,7 @@ def test_the_explanation_names_the_deadline(control, plan):
     assert "deadline" in str(control.plans.explain(plan.id))
 
 
+@pytest.mark.long
 def test_a_run_takes_a_task_with_clock_times_for_two_robots(control, plan):
     run = control.start(plan, speed=25)
     run.act("event", new_task=LATE)
@@ -67,6 +68,7 @@ def test_a_run_takes_a_task_with_clock_times_for_two_robots(control, plan):
     assert begun.time_s >= 80  # 10:01 is 80 s after the start
 
 
+@pytest.mark.long
 def test_clock_times_without_a_start_are_refused(control):
     run = control.start(control.plan("6T-2R", iterations=20).wait(), speed=1)
     run.act("event", new_task=LATE)

@@ -83,6 +83,7 @@ def _wait_for(condition):
         time.sleep(0.05)
 
 
+@pytest.mark.long
 def test_who_opened_a_page_presses_its_buttons(site):
     page = Page(site, COMMANDER)
     before = page.copies()
@@ -99,6 +100,7 @@ def test_nobody_else_does(site):
     assert page.copies() == before + 1
 
 
+@pytest.mark.long
 def test_a_role_that_was_taken_away_is_gone_from_open_pages(site):
     page = Page(site, _CHIEF)
     before = page.copies()

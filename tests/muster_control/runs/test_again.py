@@ -47,6 +47,7 @@ def requests(mission):
     return asked.map(lambda asked: [*sorted(asked, key=lambda one: one[0]), (1e9, "resume", {})])
 
 
+@pytest.mark.long
 def test_what_comes_may_wait_for_what_came_before_the_crash(monkeypatch):
     monkeypatch.setattr(checkpoints, "MOST_ENTRIES", 5)
     mission = disturbed_mission(360)
@@ -54,6 +55,7 @@ def test_what_comes_may_wait_for_what_came_before_the_crash(monkeypatch):
     require_whole(performed_with_crashes(mission, plan, [(1e9, "resume", {})], [22]), mission)
 
 
+@pytest.mark.long
 @settings(max_examples=4)
 @given(st.data())
 def test_killed_anywhere_and_resumed_each_task_is_accounted_for_once(data):
@@ -101,6 +103,7 @@ def test_work_under_way_is_begun_again_and_named():
         assert kept.log[-1]["data"]["tasks_done"] == done
 
 
+@pytest.mark.long
 def test_tasks_are_accounted_for_once_whatever_happens():
     for seed in range(3):
         mission = disturbed_mission(seed)
@@ -128,6 +131,7 @@ def test_who_cancels_gets_a_report_of_all_tasks():
     assert again[-1]["data"]["tasks_done"] == report["tasks_done"]
 
 
+@pytest.mark.long
 def test_what_a_pause_holds_up_takes_effect_where_it_stands():
     mission = muster.load("31T-6R50")
     plan = muster.solve(mission, iterations=20)

@@ -34,7 +34,7 @@ def kinds(log):
     return {entry["kind"] for entry in log}
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("world", WORLDS)
 def test_robots_that_err(world):
     whole = muster.load("6T-2R")
@@ -75,7 +75,7 @@ BESIDE = 4.0, 9.0
 """Where nobody has anything to do."""
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("traffic", ["reserve", "free"])
 @pytest.mark.parametrize("world", WORLDS)
 def test_robots_that_were_taken_away_or_moved(world, traffic):

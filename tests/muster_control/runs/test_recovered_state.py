@@ -45,6 +45,7 @@ def require_recovered(mission, plan, requests, crash, most, monkeypatch):
     return kept
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("most", [7, pytest.param(10_000, marks=pytest.mark.long)])
 @pytest.mark.parametrize("kind", SAMPLES)
 def test_each_kind_of_event_is_in_checkpoint_or_log(plan, kind, most, monkeypatch):

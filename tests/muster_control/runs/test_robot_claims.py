@@ -56,6 +56,7 @@ def test_others_are_others(monkeypatch, one, other):
     assert not claims_of(*one) & claims_of(*other)
 
 
+@pytest.mark.long
 def test_a_second_run_of_the_same_robots_is_refused_however_soon_it_is_asked_for(store):
     plan = planned(store, muster.load("6T-2R"))
 
@@ -74,6 +75,7 @@ def test_a_second_run_of_the_same_robots_is_refused_however_soon_it_is_asked_for
     asyncio.run(story())
 
 
+@pytest.mark.long
 def test_of_two_runs_that_a_server_left_the_later_one_has_the_robots(store):
     plan = store.plans.get(planned(store, muster.load("6T-2R")))
     left = (plan.mission, plan.mission_version, plan.id, "mavlink")
@@ -145,6 +147,7 @@ def test_a_declaration_that_is_wrong_is_one_line(fleets):
     assert claims_as_far_as_known("gone", {}) == {"fleet gone"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("declares", [False, True])
 def test_two_runs_never_command_the_robots_of_another_packages_fleet(store, fleets, declares):
     fleets("acme", sites if declares else None)

@@ -116,6 +116,7 @@ def test_a_record_is_found_behind_many_runs(store):
     assert [run.id for run in asyncio.run(runs.over())] == [others[0], first]
 
 
+@pytest.mark.long
 def test_a_runner_that_is_killed_goes_on_where_it_was(store):
     plan = planned(store, muster.load("31T-6R50"))
 
@@ -174,7 +175,7 @@ READ_ONLY = ("PRAGMA query_only = ON",)
 WORKS = ("PRAGMA max_page_count = 1000000", "PRAGMA query_only = OFF")
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize(("refuses", "why"), [(FULL, "the disk is full"), (READ_ONLY, "may only be read")])
 def test_while_the_database_refuses_the_run_goes_on_in_memory_and_is_written_later(store, refuses, why):
     plan, pragma = planned(store, muster.load("31T-6R50")), Pragma(store)
@@ -210,6 +211,7 @@ def test_while_the_database_refuses_the_run_goes_on_in_memory_and_is_written_lat
     assert asked == dict.fromkeys(("run.start", "run.pause", "run.speed", "run.resume"), ("done", "ada"))
 
 
+@pytest.mark.long
 def test_commands_take_effect_in_the_order_in_which_they_were_given(store, monkeypatch):
     """The database writes the first one after it was asked for the second; robots that were paused last stay paused."""
     plan = planned(store, muster.load("31T-6R50"))
@@ -324,6 +326,7 @@ def test_a_runner_is_started_again_while_the_database_is_gone(store, monkeypatch
     assert all(a.until_s < b.from_s for a, b in pairwise(stretches))
 
 
+@pytest.mark.long
 def test_who_asks_for_what_cannot_be_is_told(store):
     plan = planned(store, muster.load("yard"))  # in space, which only the runner finds out
 
@@ -402,6 +405,7 @@ def test_who_is_refused_does_not_wait_for_a_locked_database(store):
     assert [action.outcome for action in store.actions.list()] == ["no run 99"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("world", ["kinematic", "mavlink"])
 def test_a_plan_that_was_cut_short_is_not_carried_out_unless_that_is_accepted(store, world):
     mission = muster.load("6T-2R")

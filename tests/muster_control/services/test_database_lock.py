@@ -75,6 +75,7 @@ def test_of_sqlite_by_another_name(tmp_path):
             _refused(f"sqlite:///{tmp_path}/{name}", "in use by process")
 
 
+@pytest.mark.long
 def test_of_postgresql(postgresql_url):
     _hold_and_crash(postgresql_url, "in use by another server; expected one server a database")
 
@@ -133,6 +134,7 @@ def _until_nobody_writes(url):
         connection.execute("SELECT pg_advisory_lock(%s)", (_WRITING,))
 
 
+@pytest.mark.long
 def test_a_lock_that_was_lost_is_taken_anew_and_nothing_is_written_before(postgresql_url):
     with alone_with(postgresql_url) as lock, _store(postgresql_url, lock) as store:
         lock.look()
@@ -145,6 +147,7 @@ def test_a_lock_that_was_lost_is_taken_anew_and_nothing_is_written_before(postgr
         _refused(postgresql_url, "in use by another server")
 
 
+@pytest.mark.long
 def test_after_an_outage_one_of_two_servers_has_the_database(postgresql, postgresql_url):
     with alone_with(postgresql_url) as first, _store(postgresql_url, first) as old:
         postgresql.stop()
@@ -181,6 +184,7 @@ async def _under_way(services):
     return run
 
 
+@pytest.mark.long
 def test_a_server_whose_database_another_takes_carries_nothing_out_any_more(postgresql_url, monkeypatch):
     monkeypatch.setattr("muster_control.services.services._LOOK_S", 0.1)
 
@@ -205,6 +209,7 @@ def test_a_server_whose_database_another_takes_carries_nothing_out_any_more(post
     asyncio.run(story())
 
 
+@pytest.mark.long
 def test_the_command_ends_when_another_server_takes_its_database(postgresql_url, tmp_path):
     environment = {**os.environ, "XDG_DATA_HOME": str(tmp_path), "MUSTER_DB": postgresql_url}
     command = [sys.executable, "-m", "muster.cli", "serve", "--port", "0"]
@@ -228,6 +233,7 @@ def test_the_command_ends_when_another_server_takes_its_database(postgresql_url,
     assert "Traceback" not in said
 
 
+@pytest.mark.long
 def test_closing_waits_for_no_look_that_hangs_with_the_database(postgresql_url, monkeypatch):
     monkeypatch.setattr("muster_control.services.services._LOOK_S", 0.1)
     looking, answer, ended = threading.Event(), threading.Event(), threading.Event()

@@ -86,6 +86,7 @@ def test_a_shipped_mission_is_stored_when_it_is_planned(with_services):
     with_services(story)
 
 
+@pytest.mark.long
 def test_a_plan_to_go_on_from(with_services):
     async def story(services):
         first = (await over(services.jobs, await services.jobs.ask_plan(WHO, "tiny", allocator="greedy")))[-1].result[
@@ -101,6 +102,7 @@ def test_a_plan_to_go_on_from(with_services):
     with_services(story)
 
 
+@pytest.mark.long
 def test_a_job_whose_start_is_gone_fails_with_a_line(with_services):
     async def story(services):
         first = (await over(services.jobs, await services.jobs.ask_plan(WHO, "tiny", **SHORT)))[-1].result["plan"]
@@ -156,6 +158,7 @@ def test_the_queue_has_an_end(with_services):
     with_services(story, queue=2)
 
 
+@pytest.mark.long
 def test_a_job_that_is_cancelled_is_over_within_a_second(with_services, children):
     async def story(services):
         job = await services.jobs.ask_plan(WHO, "tiny", **LONG)
@@ -175,6 +178,7 @@ def test_a_job_that_is_cancelled_is_over_within_a_second(with_services, children
     with_services(story)
 
 
+@pytest.mark.long
 def test_a_job_that_waits_can_be_cancelled(with_services):
     async def story(services):
         first = await services.jobs.ask_plan(WHO, "tiny", **LONG)
@@ -242,6 +246,7 @@ def test_a_job_whose_workers_always_die_fails_with_a_line(with_services, monkeyp
     with_services(story)
 
 
+@pytest.mark.long
 def test_a_fault_of_the_server_fails_the_job_alone(with_services, monkeypatch):
     async def story(services):
         with monkeypatch.context() as broken:
@@ -266,6 +271,7 @@ def refused(monkeypatch, table, method, refusals):
     monkeypatch.setattr(table, method, refusing)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("what", ["begin", "end_with_plan"])
 def test_a_database_that_refuses_for_a_while_keeps_jobs_waiting(with_services, monkeypatch, what):
     monkeypatch.setattr("muster_control.services.jobs._AGAIN_S", 0.2)
@@ -286,6 +292,7 @@ def test_a_database_that_refuses_for_a_while_keeps_jobs_waiting(with_services, m
     with_services(story)
 
 
+@pytest.mark.long
 def test_who_closes_does_not_wait_for_a_database_that_refuses(tmp_path, monkeypatch):
     monkeypatch.setattr("muster_control.services.jobs._AGAIN_S", 0.2)
 
@@ -318,6 +325,7 @@ def test_a_job_that_is_cancelled_while_its_plan_is_written_has_none(with_service
     with_services(story)
 
 
+@pytest.mark.long
 def test_a_job_that_is_cancelled_just_when_it_has_failed_is_over(with_services, monkeypatch):
     written, go_on = threading.Event(), threading.Event()
 
@@ -370,6 +378,7 @@ def test_authors_take_turns(tmp_path):
     assert begun == [1, 11, 2, 12, 4]
 
 
+@pytest.mark.long
 def test_queued_and_running_jobs_go_on_after_a_restart(tmp_path):
     async def before():
         async with opened(tmp_path) as services:
@@ -388,6 +397,7 @@ def test_queued_and_running_jobs_go_on_after_a_restart(tmp_path):
     asyncio.run(after(asyncio.run(before())))
 
 
+@pytest.mark.long
 def test_progress_is_told_at_most_ten_times_a_second(with_services):
     async def story(services):
         begun = asyncio.get_running_loop().time()
@@ -486,6 +496,7 @@ def test_a_request_that_nothing_can_meet_is_refused_at_once(with_services, asked
     with_services(story)
 
 
+@pytest.mark.long
 def test_the_server_loads_nothing_heavy():
     code = """
 import sys

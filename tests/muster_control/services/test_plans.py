@@ -165,6 +165,7 @@ def test_a_task_that_is_not_there(with_services):
     with_services(story)
 
 
+@pytest.mark.long
 def test_exports_are_those_of_the_command(with_services, tmp_path, capsys):
     (tmp_path / "bay.yaml").write_text(BAY, encoding="utf-8")
     bay_plan().save(tmp_path / "bay.json")
@@ -198,6 +199,7 @@ def test_exports_are_those_of_the_command(with_services, tmp_path, capsys):
     assert {name: base64.b64decode(data) for name, data in answers["qgc"].items()} == {**written, "NOTES.txt": notes}
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(
     ("to", "options", "line"),
     [
@@ -263,6 +265,7 @@ def test_two_plans_side_by_side(with_services):
     with_services(story)
 
 
+@pytest.mark.long
 def test_the_allocators_are_asked_for_once(with_services, monkeypatch):
     async def story(services):
         first = await services.plans.allocators()
@@ -273,6 +276,7 @@ def test_the_allocators_are_asked_for_once(with_services, monkeypatch):
     with_services(story)
 
 
+@pytest.mark.long
 def test_looking_at_plans_does_not_wait_for_planning(with_services):
     async def story(services):
         await services.plans.upload(WHO, "tiny", ROUTES)

@@ -19,6 +19,7 @@ def log(filled):
     return filled.store.log
 
 
+@pytest.mark.long(keep=1)
 def test_the_last_two_are_kept_the_newest_first(filled, log):
     made = [checkpoint(filled.run, seq) for seq in (1, 2, 5)]
     for one in made:

@@ -134,6 +134,7 @@ def test_two_who_open_a_new_database_at_once(database_url):
         store.close()
 
 
+@pytest.mark.long(keep=1)
 def test_alembic_is_imported_only_for_a_database_of_an_older_muster(database_url):
     code = (
         "import sys\nfrom muster_control.store import Store\n"

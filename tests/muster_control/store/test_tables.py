@@ -33,6 +33,7 @@ def test_opened_again_it_has_what_was_written(filled, database_url):
     again.close()
 
 
+@pytest.mark.long(keep=1)
 @EACH
 @given(text=TEXTS, note=TEXTS, author=TEXTS, files=st.dictionaries(TEXTS, st.binary(max_size=20), max_size=3))
 def test_a_version_comes_back_as_it_was(store, text, note, author, files):
@@ -45,6 +46,7 @@ def test_a_version_comes_back_as_it_was(store, text, note, author, files):
     assert found.at.tzinfo is UTC
 
 
+@pytest.mark.long(keep=1)
 @EACH
 @given(data=DATA, arguments=DATA)
 def test_plain_data_comes_back_as_it_was(filled, data, arguments):

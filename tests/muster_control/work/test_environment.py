@@ -4,6 +4,8 @@ import asyncio
 import tempfile
 from pathlib import Path
 
+import pytest
+
 from muster_control.runs.runner_process import RunnerProcess
 from muster_control.work.environment import without_secrets
 from muster_control.work.temporary_folders import OF_RUNS, sweep
@@ -29,6 +31,7 @@ def test_secrets_stay_with_the_server():
     assert without_secrets(kept | dict.fromkeys(secret, "x")) == kept
 
 
+@pytest.mark.long
 def test_runners_leave_no_folder_and_know_no_secret(tmp_path, monkeypatch):
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr(tempfile, "tempdir", None)

@@ -138,6 +138,7 @@ def test_more_than_a_page_can_show_is_not_read_into_the_server(asked):
         asked("read_mission", text="tasks: [" + "1," * 60_000 + "]", keys=["tasks"])
 
 
+@pytest.mark.long
 def test_an_edit_is_made_and_what_is_unknown_refused(asked):
     moved = asked("edit", text=TINY, change="move", **{"with": [{"what": "task", "id": "a"}, 2.5, 3]})["text"]
     assert moved == TINY.replace("[1, 0]", "[2.5, 3]")

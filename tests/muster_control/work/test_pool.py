@@ -220,6 +220,7 @@ def test_work_that_takes_too_long_is_stopped():
     in_pool(story)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("task", ["hoards", "hoards_small_things"])
 def test_work_that_needs_too_much_memory_is_refused(task):
     async def story(pool):

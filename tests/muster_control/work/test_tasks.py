@@ -92,6 +92,7 @@ def test_plan_with_everything_that_can_be_asked(asked, plan):
     assert again["objective"]["value"] <= plan["objective"]["value"]
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(
     ("wish", "line"),
     [
@@ -158,6 +159,7 @@ def test_a_long_history_is_thinned_to_its_end():
     assert thinned([]) == []
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(("bound", "why"), [(None, ""), ("quick", "planning was stopped before a bound was proven")])
 def test_planning_that_is_stopped_at_once_gives_the_first_plan(asked, bound, why):
     stop_request = StopRequest()
@@ -179,6 +181,7 @@ def test_the_files_of_a_site_are_one_mission(asked):
     assert answer["ledger"]["files"]["panels.csv"] == {"read": 12, "passed_over": 0, "refused": 0}
 
 
+@pytest.mark.long
 def test_the_files_of_a_site_are_added_to_a_mission(asked):
     team = "schema: muster/1\nname: team\norigin_wgs84: {lat_deg: 47, lon_deg: 8}\n"
     team += "robots: [{id: r, position: [0, 0]}]\ntasks: []\n"

@@ -92,7 +92,7 @@ def test_one_file_goes_to_standard_output_or_where_it_is_told(form, export):
     assert export("--to", form, "-o", "x")[0] == 0  # what it wrote it may write again
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize(("form", "magic"), [("sheets", b"%PDF-"), ("overview", b"%PDF-"), ("xlsx", b"PK")])
 def test_files_that_are_no_texts_are_written_as_they_are(form, magic, export):
     assert export("--to", form, "-o", "x") == (0, "", "")

@@ -30,6 +30,7 @@ def written(folder, text, routes):
     return mission, verify(mission, plan_of(routes)), None
 
 
+@pytest.mark.long
 def test_a_page_for_each_robot(tmp_path):
     files = printed(crew(tmp_path), "sheets")
     assert (list(files.contents), files.messages) == (["sheets.pdf"], ())
@@ -43,12 +44,14 @@ def test_a_page_for_each_robot(tmp_path):
     assert "No stops: this robot stays where it is." in idle
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("form", ["sheets", pytest.param("overview", marks=pytest.mark.long), "xlsx", "ics"])
 def test_the_same_plan_gives_the_same_bytes(tmp_path, form):
     given = crew(tmp_path)
     assert printed(given, form) == printed(given, form)
 
 
+@pytest.mark.long
 def test_a_file_for_each_robot_that_has_stops(tmp_path):
     files = printed(crew(tmp_path), "sheets", per_robot=True)
     assert list(files.contents) == ["r.pdf", "s.pdf", "t.pdf", "u.pdf"]
@@ -56,6 +59,7 @@ def test_a_file_for_each_robot_that_has_stops(tmp_path):
     assert [len(pages(content)) for content in files.contents.values()] == [1, 1, 1, 1]
 
 
+@pytest.mark.long
 def test_a_long_table_goes_on_under_its_headings(tmp_path):
     tasks = "".join(f"  - {{id: task{k}, position: [{k}, 1]}}\n" for k in range(60))
     text = f"schema: muster/1\nname: long\nrobots: [{{id: r, position: [0, 0]}}]\ntasks:\n{tasks}"
@@ -68,6 +72,7 @@ def test_a_long_table_goes_on_under_its_headings(tmp_path):
     assert "End of the sheet of r" in others[-1]
 
 
+@pytest.mark.long
 def test_names_of_all_scripts_and_lengths(tmp_path):
     text = """\
 schema: muster/1
@@ -91,6 +96,7 @@ tasks:
     assert pages(printed(given, "overview").contents["overview.pdf"])
 
 
+@pytest.mark.long
 def test_the_overview_has_figures_robots_and_what_is_left_out(tmp_path):
     (page,) = pages(printed(crew(tmp_path), "overview").contents["overview.pdf"])
     for word in (
@@ -125,6 +131,7 @@ def test_heights_of_drones_stand_on_sheets_and_overview(tmp_path):
     assert "in the air, 24 m up" in pages(printed(given, "overview", altitude_step=12.0).contents["overview.pdf"])[0]
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("form", ["sheets", "overview", "xlsx"])
 def test_a_mission_in_space_without_a_type_or_start(form, tmp_path):
     text = (

@@ -185,6 +185,7 @@ def test_a_name_that_cannot_be_printed_is_escaped_and_cut(tmp_path, robots):
     assert any("\\x1b[31m\\n" in line for line in lines)
 
 
+@pytest.mark.long
 def test_the_ledger_of_any_number_of_kinds_is_short_and_complete(tmp_path, robots):
     file = tmp_path / "site.geojson"
     point = writers.feature("Point", [8.5417, 47.377], **{f"p{k}": 1 for k in range(2_500)})
@@ -235,6 +236,7 @@ def read_feature(folder, role, properties):
     return file_data(found.mission), read
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("role", ROLES)
 def test_what_is_read_changes_the_mission_and_what_is_passed_over_does_not(role, tmp_path):
     tried = 0

@@ -104,6 +104,7 @@ BOMBS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "names",
     [

@@ -48,6 +48,7 @@ def test_search_areas_are_surveyed(tmp_path, team, name):
     assert (task.action.name, task.action.height_m, found.map) == ("coverage", 60, None)
 
 
+@pytest.mark.long(keep=60)
 @pytest.mark.parametrize("by", ["file", "id", "type", "layer"])
 @pytest.mark.parametrize(
     ("name", "kind"),

@@ -33,6 +33,7 @@ def hue(color):
     return color / np.linalg.norm(color)
 
 
+@pytest.mark.long
 def test_an_mp4_has_as_many_pictures_as_its_speed_says(footage, tmp_path):
     from muster_physics.film import write_film
 
@@ -134,6 +135,7 @@ def test_moments_between_two_looks_are_between(footage):
     np.testing.assert_allclose(moments.at(0.0)[:, :3], moments.poses[0, :, :3])
 
 
+@pytest.mark.long
 def test_a_still_shows_the_end_from_above(footage, tmp_path):
     import cv2
 
@@ -148,6 +150,7 @@ def test_a_still_shows_the_end_from_above(footage, tmp_path):
     assert np.nonzero(blue)[0].mean() > np.nonzero(green)[0].mean()  # and south of it
 
 
+@pytest.mark.long
 def test_interrupted_a_film_is_whole_up_to_then(footage, tmp_path, monkeypatch):
     from muster_physics.film import film, write_film
 

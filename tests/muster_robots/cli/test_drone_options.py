@@ -72,6 +72,7 @@ def test_what_the_kinematic_world_does_not_have_is_refused(options, why, capsys)
     assert why in capsys.readouterr().err
 
 
+@pytest.mark.long
 def test_reports_have_charges(capsys):
     call = ["simulate", "31T-6R50", "--iterations", "20", "-q", "--battery", "all=0.9", "--battery", "r_1=1"]
     assert muster([*call, "--format", "json"]) == 0

@@ -22,6 +22,7 @@ def recorded(folder):
     return Path("r.mcap")
 
 
+@pytest.mark.long
 def test_a_record_beside_itself(recorded, muster):
     code, _, err = muster("replay", recorded, "--ros2", "o.mcap", "--ros1", "o.bag", "--begins", "1000")
     assert code == 0

@@ -30,7 +30,7 @@ def ended(kind, faults, at_end):
     return report, fleet, states, sky.drones
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long
 @KINDS
 @pytest.mark.parametrize("at_end", ["hold", "return", "land"])
 def test_a_drone_whose_heartbeats_were_late_by_7_s_ends_as_the_others(kind, at_end):
@@ -47,6 +47,7 @@ def test_a_drone_whose_heartbeats_were_late_by_7_s_ends_as_the_others(kind, at_e
         assert (abs(north) + abs(east) < 0.1) == (at_end == "return")
 
 
+@pytest.mark.long
 @KINDS
 def test_a_drone_that_is_heard_only_after_the_end_is_told_then(kind):
     _, _, states, drones = ended(kind, Faults(late_heartbeats_s=25, late_by_s=10), "return")
@@ -54,6 +55,7 @@ def test_a_drone_that_is_heard_only_after_the_end_is_told_then(kind):
     assert states["r_0"].state == "returned, landed, not armed"
 
 
+@pytest.mark.long
 def test_a_drone_that_does_not_answer_counts_as_flying():
     _, fleet, states, _ = ended(PX4, Faults(silent_at_s=10), "return")
     assert states["r_0"].moving
@@ -63,6 +65,7 @@ def test_a_drone_that_does_not_answer_counts_as_flying():
     assert not states["r_1"].moving
 
 
+@pytest.mark.long
 @KINDS
 def test_a_drone_that_falls_silent_as_it_arms_counts_as_flying(kind):
     """Muster never hears that it is armed."""
@@ -72,12 +75,14 @@ def test_a_drone_that_falls_silent_as_it_arms_counts_as_flying(kind):
     assert re.fullmatch(r"not answering for \d+ s; last seen: asked to arm", states["r_0"].state)
 
 
+@pytest.mark.long
 def test_a_drone_that_returns_for_its_battery_is_not_told_to_land_on_its_way():
     _, _, states, drones = ended(PX4, Faults(low_battery_at_s=15), "land")
     assert states["r_0"].state == "returned, landed, not armed"
     assert drones["r_0"].flight.place[:2] == pytest.approx((0.0, 0.0), abs=0.1)
 
 
+@pytest.mark.long
 def test_a_drone_under_a_pilot_is_left_to_the_pilot_and_named():
     _, _, states, drones = ended(PX4, Faults(pilot_at_s=10), "return")
     assert drones["r_0"].mode == 3 << 16
@@ -85,6 +90,7 @@ def test_a_drone_under_a_pilot_is_left_to_the_pilot_and_named():
     assert states["r_0"].state == "flies under a pilot, armed"
 
 
+@pytest.mark.long
 def test_a_drone_that_never_flew():
     _, _, states, _ = ended(PX4, Faults(refuse_arm=True), "return")
     assert (states["r_0"].state, states["r_0"].moving) == ("did not fly, not armed", False)

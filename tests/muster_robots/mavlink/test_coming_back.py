@@ -153,6 +153,7 @@ def test_who_refused_to_hold_is_told_again():
     assert (HOLD, 1.0) in commands(talk.beats(4, mode=PX4.mission, armed=True))
 
 
+@pytest.mark.long(keep=2)
 @KINDS
 @pytest.mark.parametrize("heard_again", [True, False])
 def test_a_fleet_whose_drone_was_silent_for_a_while(kind, heard_again):

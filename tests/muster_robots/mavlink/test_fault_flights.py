@@ -11,7 +11,7 @@ from tests.muster_robots.mavlink.fault_flights import FAMILIES, flight_of, main,
 PAGE = Path(__file__).parents[3] / "docs" / "fault-flights.md"
 
 
-@pytest.mark.long(keep=5)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("family", FAMILIES)
 def test_a_flight_with_faults_ends_as_it_may(family, seed):
@@ -20,13 +20,14 @@ def test_a_flight_with_faults_ends_as_it_may(family, seed):
     assert flight.done | set(flight.lost) == {task.id for task in flight.fleet_mission.tasks}
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("family", FAMILIES)
 def test_the_page_shows_what_flights_come_to(family):
     row = row_of(family, [flight_of(family, seed) for seed in range(3)])
     assert f"| {' | '.join(map(str, row))} |" in PAGE.read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 def test_the_table_counts_what_is_wrong(monkeypatch, capsys):
     """A fleet that forgets a drone that is armed is noticed."""
     import tests.muster_robots.mavlink.fault_flights as flights

@@ -110,7 +110,7 @@ EVENTS = {Costs.ROBOT: "robot_fails", Costs.TASK: "task_refused", Costs.PAUSE: "
 """What is told of a fault, by what it costs."""
 
 
-@pytest.mark.long(keep=8)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
 @pytest.mark.parametrize(("fault", "case", "offboard"), EVERY)
 def test_each_fault_ends_as_the_table_says(kind, fault, case, offboard):
@@ -144,6 +144,7 @@ def test_each_fault_ends_as_the_table_says(kind, fault, case, offboard):
     assert told in [cause["kind"] for cause in causes]
 
 
+@pytest.mark.long
 def test_a_fault_is_told_only_what_the_table_says():
     """`nothing` is nothing: after its fault a drone hears heartbeats alone."""
     for fault, faults in ((Kind.PILOT, Faults(pilot_at_s=3)), (Kind.DISARMED, Faults(disarm_at_s=3))):

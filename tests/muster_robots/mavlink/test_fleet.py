@@ -20,6 +20,7 @@ from muster_robots.mavlink.simulated.faults import Faults
 KINDS = pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
 
 
+@pytest.mark.long(keep=1)
 @KINDS
 @pytest.mark.parametrize("offboard", [False, True])
 def test_a_mission_is_flown(kind, offboard):
@@ -32,6 +33,7 @@ def test_a_mission_is_flown(kind, offboard):
     assert all(0 < row.usage_flown < 60 for row in report.robots)
 
 
+@pytest.mark.long(keep=1)
 @KINDS
 def test_lost_packets_do_no_harm(kind):
     lossy = {f"r_{k}": Faults(loss=0.2, repeat_reached=True) for k in range(2)}
@@ -40,6 +42,7 @@ def test_lost_packets_do_no_harm(kind):
     assert fleet.faults == []
 
 
+@pytest.mark.long(keep=1)
 @KINDS
 def test_nothing_is_sent_without_leave_to_arm(kind):
     there = mission(2)
@@ -138,7 +141,7 @@ def test_endpoints_that_are_none(endpoint):
         MavlinkFleet(mission(1), {"r_0": endpoint})
 
 
-@pytest.mark.long(keep=8)
+@pytest.mark.long(keep=2)
 @KINDS
 @pytest.mark.parametrize("offboard", [False, True])
 @pytest.mark.parametrize("after_s", [0.1, 1.5, 3.0, 4.5, 6.0, 7.5])
@@ -161,6 +164,7 @@ def test_whenever_it_is_stopped_it_hovers_or_stands_disarmed(kind, offboard, aft
     assert (drone.armed, drone.mode) == (True, kind.hold) if drone.flight.flies else not drone.armed
 
 
+@pytest.mark.long
 def test_a_drone_with_too_little_in_its_battery_for_its_way_is_planned_for_again():
     there = mission(2, (Task(id="near", position=(20.0, 0.0, 10.0)), Task(id="far", position=(150.0, 6.0, 10.0))))
     there = replace(there, robots=tuple(replace(robot, work_capacity=400.0) for robot in there.robots))

@@ -136,6 +136,7 @@ def two(sky, faults=None, speed=3.0):
     return [sky(faults, system=k + 1, speed=speed, origin=origin_at(ORIGIN, (0.0, 8.0 * k, 0.0))) for k in range(2)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("more", [(), pytest.param(("--offboard",), marks=pytest.mark.long)])
 def test_ctrl_c_in_flight_lets_drones_hover(sky, flying, more):
     drones = two(sky, speed=1.0 if more else 3.0)
@@ -207,6 +208,7 @@ def heartbeats(drone):
     return sum(message.get_type() == "HEARTBEAT" for message in drone.heard)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_before_take_off_tells_of_a_drone_that_is_in_the_air(sky, flying, number):
     drone = hovering(sky(system=1))  # and one is missing: `fly` waits for it
@@ -234,6 +236,7 @@ def test_a_mission_whose_time_is_over_is_refused_or_shifted(mission, port, drone
     assert json.loads(capsys.readouterr().out)["tasks_done"] == ["near"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("given", [False, True])
 def test_a_plan_that_was_cut_short_is_not_flown_unless_told(mission, port, drone, capsys, monkeypatch, tmp_path, given):
     from muster.planning import solving
@@ -314,6 +317,7 @@ def test_a_drone_that_fails_is_named_with_its_reason_and_its_task_is_lost(missio
     assert "near" in said.out
 
 
+@pytest.mark.long
 def test_a_drone_whose_motors_stop_has_crashed_and_loses_its_task(mission, port, sky, capsys):
     mission.write_text(MISSION.replace("[10, 0, 5]", "[400, 0, 30]"))
     drone = sky(Faults(disarm_at_s=6.0))

@@ -60,6 +60,7 @@ class Router(Sky):
                     self.end.sendto(packet, self.peer)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("offboard", [False, True])
 def test_three_drones_behind_one_endpoint(offboard):
     there = mission(3)

@@ -13,7 +13,7 @@ KINDS = pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.
 HOME = "returned, landed, not armed"
 
 
-@pytest.mark.long(keep=10)
+@pytest.mark.long
 @KINDS
 @pytest.mark.parametrize(
     "faults",
@@ -39,6 +39,7 @@ def test_a_gap_loses_neither_drone_nor_task(faults, kind, count):
     assert {state.state for state in flight.states.values()} == {HOME}
 
 
+@pytest.mark.long
 def test_f06_who_is_called_home_by_another_station_is_left_to_it_and_its_words_are_told():
     flight = fly(Faults(rtl_at_s=8))
     assert flight.done == ALL
@@ -47,6 +48,7 @@ def test_f06_who_is_called_home_by_another_station_is_left_to_it_and_its_words_a
     assert all("0x" not in str(fault) for fault in flight.fleet.faults)
 
 
+@pytest.mark.long
 @KINDS
 def test_f07_what_a_fence_of_the_autopilot_refuses_others_do_and_the_drone_does_the_rest(kind):
     near = tuple(Task(id=f"n_{k}", position=(20.0, 6.0 * k, 10.0)) for k in range(4))
@@ -68,6 +70,7 @@ def test_f08_a_stick_mode_without_sticks_that_fell_to_hold_is_taken_back():
     assert flight.states["r_0"].state == HOME
 
 
+@pytest.mark.long
 @KINDS
 def test_a_pilot_who_gives_the_drone_back_finds_it_brought_home_with_the_others(kind):
     flight = fly(Faults(pilot_at_s=8, pilot_for_s=6), kind=kind)
@@ -76,6 +79,7 @@ def test_a_pilot_who_gives_the_drone_back_finds_it_brought_home_with_the_others(
     assert any("pilot" in str(fault) for fault in flight.fleet.faults)
 
 
+@pytest.mark.long
 def test_h01_the_position_lost_within_a_gap_ends_in_one_state():
     flight = fly(Faults(silent_at_s=8, silent_for_s=8, gps_lost_at_s=10, gps_lost_for_s=7))
     assert flight.done == ALL
@@ -124,6 +128,7 @@ def test_h04_a_way_point_too_far_costs_its_task_and_not_the_drone():
     assert flight.states["r_0"].state == HOME
 
 
+@pytest.mark.long
 @KINDS
 def test_f07_and_h04_with_parameters_that_are_read_nothing_is_flown_that_is_refused(kind):
     near = tuple(Task(id=f"n_{k}", position=(20.0, 6.0 * k, 10.0)) for k in range(4))

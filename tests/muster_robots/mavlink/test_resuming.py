@@ -169,6 +169,7 @@ def test_a_run_goes_on_without_a_drone_that_is_not_heard_any_more(tmp_path):
     assert silent.armed
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", [PX4, ARDUPILOT])
 @pytest.mark.parametrize("at_end", ["hold", "land"])
 def test_drones_are_brought_down_whatever_they_do(kind, at_end):

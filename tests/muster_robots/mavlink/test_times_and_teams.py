@@ -25,7 +25,7 @@ def flown(there, plan, sky, offboard):
     return report, heard
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("kind", [PX4, ARDUPILOT], ids=lambda kind: kind.name)
 @pytest.mark.parametrize("offboard", [False, True], ids=["mission", "offboard"])
 def test_drones_wait_for_a_window_and_begin_together(kind, offboard):

@@ -42,6 +42,7 @@ def test_poses_of_every_kind_are_read(form, tmp_path):
     assert tracks["/tf:base_link"].frame == "map"
 
 
+@pytest.mark.long
 def test_a_recording_that_breaks_off_is_read_as_far_as_it_is_whole(tmp_path):
     file = write("mcap", tmp_path / "r", [("/pose", k * 0.1, pose(k * 0.1, (k, 0, 0))) for k in range(9000)])
     file.write_bytes(file.read_bytes()[: -(file.stat().st_size // 3)])

@@ -124,6 +124,7 @@ def test_schemas_and_profile_are_those_of_ros2(ros2_file):
     assert {channel.message_encoding for channel in summary.channels.values()} == {"cdr"}
 
 
+@pytest.mark.long
 @pytest.mark.skipif(shutil.which("rosbag") is None, reason="no rosbag (Debian: apt-get install python3-rosbag)")
 def test_rosbag_of_debian_reads_it(ros1_file):
     file, counts = ros1_file

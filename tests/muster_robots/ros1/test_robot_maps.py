@@ -23,6 +23,7 @@ def test_a_message_is_read_as_it_is(rospy_there):
     assert message_of(message).origin is None
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mapping", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_a_mission_is_carried_out_by_the_maps_of_its_robots(mapping, ros):
     (ros.folder / "room.yaml").write_text(ROOM, encoding="utf-8")

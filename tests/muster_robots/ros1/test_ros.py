@@ -31,6 +31,7 @@ def mission(tmp_path):
     return "m.yaml"
 
 
+@pytest.mark.long
 def test_robots_are_given_goals_wait_for_a_window_and_begin_together(ros):
     """Of points that find their way: robots with bodies that meet at one place may stand off on a busy machine."""
     opens_s = 2.0

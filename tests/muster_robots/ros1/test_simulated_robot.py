@@ -2,7 +2,10 @@
 
 import time
 
+import pytest
 
+
+@pytest.mark.long
 def test_in_a_namespace_its_topics_frames_and_words_are_there(ros):
     heard = ros.listener("/team/r_0/odom=nav_msgs/Odometry", "/tf=tf2_msgs/TFMessage")
     robot = ros.robot("r_0", 2, 3, "--namespace", "team")

@@ -106,6 +106,7 @@ def test_what_a_drone_sees_becomes_a_task_of_another_robot_whose_laser_shows_obs
     assert (frames["d_0/camera"]["header"]["frame_id"], mount["translation"]["x"]) == ("d_0/base_link", 0.1)
 
 
+@pytest.mark.long
 def test_images_from_files_are_published_with_their_calibration(ros):
     import cv2
 
@@ -121,6 +122,7 @@ def test_images_from_files_are_published_with_their_calibration(ros):
     assert found["first"] in ([0, 0, 0], [50, 0, 0], [100, 0, 0])
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(
     ("given", "said"),
     [

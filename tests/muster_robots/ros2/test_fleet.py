@@ -46,6 +46,7 @@ def until(fleet, true, most_s=15.0):
         fleet.advance(fleet.time_s + 0.1)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("says", ["pose", "odom"])
 def test_a_robot_follows_way_points(says, robots):
     robots("r_0", 1, 0, says)
@@ -88,6 +89,7 @@ def test_cancelled_it_stays_and_silent_its_time_stands_still(robots):
     fleet.close()
 
 
+@pytest.mark.long
 def test_a_plan_is_carried_out_by_robots_in_other_processes(robots):
     there = mission("r_0", "r_1")
     robots("r_0", 0, 0, "pose")
@@ -99,6 +101,7 @@ def test_a_plan_is_carried_out_by_robots_in_other_processes(robots):
     fleet.close()
 
 
+@pytest.mark.long
 def test_a_robot_that_is_pushed_goes_on_and_one_that_an_operator_takes_away_stands_until_it_returns(robots):
     there = mission("r_0", "r_1")
     there = replace(there, tasks=tuple(replace(task, duration_s=1.0) for task in there.tasks))

@@ -83,6 +83,7 @@ def until(fleet, true, most_s=30.0):
         fleet.advance(fleet.time_s + 0.05)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("version", "says"),
     [

@@ -97,6 +97,7 @@ def test_a_latched_reader_hears_what_was_published_before(loopback):
     theirs.close()
 
 
+@pytest.mark.long
 def test_a_mission_is_carried_out_by_the_maps_of_its_robots(start, simulated, tmp_path):
     pytest.importorskip("cyclonedds")
     file = tmp_path / "room.yaml"

@@ -169,11 +169,13 @@ def test_what_is_published_is_known_until_its_publisher_leaves():
     other.close()
 
 
+@pytest.mark.long
 def test_a_simulated_robot_in_no_domain_is_one_line(start):
     out, err = start("-m", "muster_robots.ros2.simulated_participant", "r_0", "--domain", "300").communicate(timeout=20)
     assert (out, err) == ("", "domain: '300'; expected a number from 0 to 232\n")
 
 
+@pytest.mark.long
 def test_what_is_missing_is_one_line(start, mission):
     carried = start("-m", "muster.cli", "ros2", mission, *QUICK, "--wait", "0.3")
     out, err = carried.communicate(timeout=20)

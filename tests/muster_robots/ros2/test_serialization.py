@@ -80,6 +80,7 @@ def in_both(message, ros):
     return ros == ROS2 or (message.NAME not in PRIMITIVES_OF_ROS1 and type_name(message) in store(ROS1).types)
 
 
+@pytest.mark.long(keep=7)
 @pytest.mark.parametrize("message", SENT, ids=lambda message: message.NAME)
 @settings(max_examples=15)
 @given(st.data())

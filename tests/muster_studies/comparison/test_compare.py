@@ -204,6 +204,7 @@ def test_a_file_of_results_is_written_by_one_comparison_at_once(tmp_path):
         pass
 
 
+@pytest.mark.long
 def test_an_interruption_keeps_what_there_is(tmp_path):
     def interrupt(run, made, total):
         if made == 3:
@@ -243,7 +244,7 @@ print([run.status for run in found.runs], [run.tasks_completed for run in found.
 """
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long
 @pytest.mark.parametrize("through", ["file", "standard input"])
 def test_functions_of_a_script_go_to_processes(through, tmp_path):
     """Without `if __name__ == "__main__"`, and as in a notebook, where there is no file."""
@@ -266,6 +267,7 @@ def test_without_cloudpickle_it_is_told(monkeypatch):
     assert muster.compare(small(), lambda problem: in_order(problem), seeds=1, jobs=1).runs[0].is_done
 
 
+@pytest.mark.long
 def test_an_allocator_of_a_file_here(tmp_path, monkeypatch):
     name = "own_allocators_of_this_test"
     (tmp_path / f"{name}.py").write_text(

@@ -19,6 +19,7 @@ def report(tmp_path_factory):
     return file
 
 
+@pytest.mark.long
 @pytest.mark.skipif(browser_found() is None, reason="no browser: tools/test_packages.sh installs one")
 def test_the_page_fits_its_window_and_asks_for_nothing(report, tmp_path):
     browser = Browser(tmp_path)

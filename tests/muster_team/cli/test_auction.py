@@ -42,6 +42,7 @@ def without_times(text):
     return data | {"history": [value for _, value in data["history"]]}
 
 
+@pytest.mark.long
 def test_plan_and_book_are_those_of_the_auction_in_one_process(muster):
     terms = ("--bid", "max", "--placement", "append", "--winner", "least-contested", "--ignore", "capacity")
     code, out, err = muster("auction", "yard.yaml", *terms, "--format", "json", "-q", "--book", "here.csv")
@@ -52,6 +53,7 @@ def test_plan_and_book_are_those_of_the_auction_in_one_process(muster):
     assert Path("here.csv").read_bytes() == Path("there.csv").read_bytes()
 
 
+@pytest.mark.long
 def test_each_robot_writes_what_it_knows(muster, three):
     code, out, err = muster("auction", three, "--views", "views", "-o", "plan.json")
     assert code == 0
@@ -64,10 +66,12 @@ def test_each_robot_writes_what_it_knows(muster, three):
         assert muster("verify", three, view)[0] == 0
 
 
+@pytest.mark.long
 def test_a_task_that_nobody_can_do_is_told(muster):
     assert muster("auction", "yard.yaml", "--require-complete", "-q")[0] == 3
 
 
+@pytest.mark.long
 def test_a_time_limit_ends_it_and_says_how_far_it_was(muster):
     code, out, err = muster("auction", "yard.yaml", "--time-limit", 0)
     assert (code, out) == (2, "")
@@ -80,6 +84,7 @@ def running(*arguments, **others):
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **others)
 
 
+@pytest.mark.long
 def test_ctrl_c_ends_it(three):
     tasks = "".join(f'  - {{id: "{k}", position: [{k}, {k % 7}]}}\n' for k in range(4, 2000))
     three.write_text(MISSION + tasks, encoding="utf-8")
@@ -157,6 +162,7 @@ def ended(*processes):
     return [(process.returncode, *words) for process, words in zip(processes, told, strict=True)]
 
 
+@pytest.mark.long
 def test_three_processes_agree_and_say_who_is_there(three, ports):
     """Whether or not they are told under which name they find each other."""
     own = {name: ("--linger", 1, "-o", f"{name}.json") for name in "abc"}

@@ -32,6 +32,7 @@ def kept():
     return len(gc.get_objects())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("epochs", [200, pytest.param(3000, marks=pytest.mark.long)])
 def test_what_a_robot_keeps_does_not_grow_with_the_number_of_epochs(epochs):
     net = network(line_mission(robots=2, tasks=2))

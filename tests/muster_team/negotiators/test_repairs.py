@@ -1,5 +1,6 @@
 """Who asks when, and who answers: in large teams not all at once."""
 
+import pytest
 from tests.muster_team.networks import line_mission, network
 
 from muster_team.negotiators.repairs import CROWD, HELPERS, Repairs
@@ -24,6 +25,7 @@ def test_in_a_large_team_about_as_many_ask_in_each_moment():
     assert waits != asked_s(len(NAMES), number=2)  # not always the same are late
 
 
+@pytest.mark.long
 def test_of_a_large_team_the_more_help():
     def helpers(robots):
         """Robots that answer the first heartbeat of one that heard no bids, one of the others being cut off."""

@@ -40,6 +40,7 @@ def test_any_bytes_are_a_message_or_garbled(data):
     read_or_garbled(bytes((PROTOCOL,)) + data)
 
 
+@pytest.mark.long
 @given(messages, st.lists(st.tuples(st.integers(0, 10**6), st.integers(0, 255), st.integers(0, 3)), max_size=4))
 def test_a_message_with_bytes_changed_lost_or_added_is_a_message_or_garbled(message, changes):
     data = bytearray(CODEC.encode(message))

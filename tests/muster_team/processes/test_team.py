@@ -61,6 +61,7 @@ def exists(pid):
     return True
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("transport", "robots", "tasks", "victims"),
     [
@@ -84,6 +85,7 @@ def test_when_some_are_killed_in_the_middle_the_others_do_it_all(transport, robo
     assert not any(exists(pid) for pid in pids)
 
 
+@pytest.mark.long
 def test_without_faults_it_is_the_plan_of_the_auction_in_one_process():
     problem = problem_of(4, 12)
     with team_of(problem) as team:
@@ -100,6 +102,7 @@ def agreement_of(team, when_begun=lambda team: None):
         return until(team, team.agreement)
 
 
+@pytest.mark.long
 def test_a_robot_that_cannot_take_part_is_named():
     team = team_of(problem_of(2, 2), method="dance")
     with pytest.raises(MusterError, match=r"^r_[01]: method: dance; expected auction"):
@@ -128,6 +131,7 @@ with team_of(problem_of(4, 400)) as team:
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_robots_end_with_the_one_that_started_them(how):
     starter = subprocess.Popen(
@@ -143,6 +147,7 @@ def test_robots_end_with_the_one_that_started_them(how):
         time.sleep(0.05)
 
 
+@pytest.mark.long
 def test_a_robot_that_stands_still_holds_up_nobody_who_sends_to_it():
     """Far more is sent than a pipe holds; of what is enough once the latest waits, of the rest all."""
     with team_of(problem_of(2, 4)) as team:

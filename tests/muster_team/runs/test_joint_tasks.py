@@ -50,7 +50,7 @@ def check_each_was_done_once(team):
     assert not any(node.twice for node in team.net.nodes.values())
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(6))
 def test_all_of_a_team_begin_and_end_at_one_moment_however_much_is_lost(seed):
     team = SimulatedTeam(lifting(seed), seed=seed, loss=0.1 * seed, delay_s=0.05, jitter_s=0.1, duplication=0.1)
@@ -64,7 +64,7 @@ def test_all_of_a_team_begin_and_end_at_one_moment_however_much_is_lost(seed):
     assert abs(x - y) <= MOMENT_S
 
 
-@pytest.mark.long(keep=4)
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(12))
 def test_a_member_that_fails_at_any_moment_frees_the_task_and_nothing_is_done_by_fewer_or_twice(seed):
     random = Random(seed)

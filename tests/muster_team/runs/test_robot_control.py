@@ -43,6 +43,7 @@ def ends(team):
     return team.times("ends")
 
 
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("seed", range(4))
 def test_without_faults_every_task_is_done_once_after_what_it_waits_for(seed):
     mission = square(seed)
@@ -53,7 +54,7 @@ def test_without_faults_every_task_is_done_once_after_what_it_waits_for(seed):
     assert all(ended[before] <= began[task.id] for task in mission.tasks for before in task.prerequisites)
 
 
-@pytest.mark.long(keep=4)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(12))
 def test_while_robots_hear_each_other_nothing_is_done_twice_whoever_crashes(seed):
     mission, random = square(seed), Random(seed)
@@ -76,7 +77,7 @@ def test_while_robots_hear_each_other_nothing_is_done_twice_whoever_crashes(seed
     assert set(done) >= {task.id for task in mission.tasks} - waiting
 
 
-@pytest.mark.long(keep=3)
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("seed", range(8))
 def test_across_a_cut_only_tasks_that_allow_it_are_done_twice(seed):
     mission, random = square(seed, robots=5), Random(seed)
@@ -135,6 +136,7 @@ def hear(team, robot, *facts):
     node.handle(message, team.net.now)
 
 
+@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(("kind", "done"), [("cancelled", 0), ("moved", 1)])
 def test_what_is_heard_of_a_task_before_it_is_heard_that_there_is_one_holds(kind, done):
     team = SimulatedTeam(square())
@@ -245,6 +247,7 @@ def test_a_robot_that_is_stuck_leaves_its_tasks_to_others():
     assert ends(team)["new"] == 1
 
 
+@pytest.mark.long
 def test_a_robot_that_is_stuck_at_what_nobody_may_do_again_tells_so_and_nobody_waits_for_it():
     once = {"across_partition": "at-most-once"}
     mission = Mission(
@@ -357,6 +360,7 @@ def test_a_robot_plans_again_after_another_has_done_what_only_the_same_may_go_on
     assert ends(team) == {"dig": 1, "fill": 1, "scan": 1, "new": 1}
 
 
+@pytest.mark.long
 def test_a_robot_that_comes_late_takes_tasks():
     mission = square(tasks=20)
     team = SimulatedTeam(mission, later=["r_3"])

@@ -38,6 +38,7 @@ def carried_out(mission, **how):
     return report, told
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("transport", ["udp", pytest.param("zenoh", marks=pytest.mark.long)])
 def test_without_faults_they_do_what_the_auction_in_one_process_says(transport):
     mission = line()
@@ -87,6 +88,7 @@ def test_they_agree_anew_when_robots_fail_return_or_join_and_tasks_come_move_and
     assert {robot.id for robot in recording.robots} == {"r_0", "r_1", "r_2", "j"}
 
 
+@pytest.mark.long
 def test_a_robot_that_is_moved_goes_on_from_there_and_one_that_is_taken_away_returns():
     mission = line(
         [
@@ -103,6 +105,7 @@ def test_a_robot_that_is_moved_goes_on_from_there_and_one_that_is_taken_away_ret
     assert report.contacts == 0
 
 
+@pytest.mark.long
 def test_when_all_robots_fail_the_mission_ends_with_what_was_done():
     report, told = carried_out(line([Event(at_s=8 + k, robot_fails=f"r_{k}") for k in range(3)]))
     assert set(report.tasks_done) < {task.id for task in line().tasks}
@@ -148,6 +151,7 @@ def test_tasks_that_must_not_be_done_twice_wait_for_who_is_cut_off():
     assert "twice" not in told
 
 
+@pytest.mark.long
 def test_robots_are_heard_though_the_world_is_slower_than_real_time(monkeypatch):
     advance = KinematicWorld.advance
 
@@ -174,6 +178,7 @@ def test_what_is_neither_a_plan_nor_a_negotiation_is_refused():
         muster.simulate(line(), Negotiation(), speed=11.0)
 
 
+@pytest.mark.long
 def test_who_does_not_agree_in_time_does_not_begin():
     with pytest.raises(MusterError, match="no agreement within 0 s"):
         muster.simulate(line(), Negotiation(limit_s=0.0))

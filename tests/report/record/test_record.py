@@ -86,6 +86,7 @@ def test_what_goes_in_comes_out(mission, plan, whole):
         np.testing.assert_allclose(got, [step[k] for step in told.steps], atol=5.001e-5)
 
 
+@pytest.mark.long
 def test_every_message_has_the_form_of_its_schema(whole):
     """Read by the reader of mcap, judged by jsonschema."""
     import jsonschema
@@ -108,6 +109,7 @@ def test_every_message_has_the_form_of_its_schema(whole):
     assert seen["/log"] == seen["/muster/event"] == 124
 
 
+@pytest.mark.long
 def test_a_record_cut_anywhere_is_read_up_to_there(whole, tmp_path):
     data, read = whole.read_bytes(), read_record(whole)
     file, lengths, text = tmp_path / "cut.mcap", [], read.mission_text.encode()
@@ -130,6 +132,7 @@ def test_a_record_cut_anywhere_is_read_up_to_there(whole, tmp_path):
     assert len(set(lengths)) > 20  # it is in every chunk that something is found
 
 
+@pytest.mark.long
 def test_of_a_record_with_wrong_bytes_what_is_read_is_right(whole, tmp_path):
     from mcap.reader import make_reader
 
@@ -167,6 +170,7 @@ while True:
 """
 
 
+@pytest.mark.long
 def test_the_record_of_a_killed_process_opens(tmp_path):
     file = tmp_path / "killed.mcap"
     process = subprocess.Popen([sys.executable, "-c", _ENDLESS, str(file)], stdout=subprocess.PIPE)

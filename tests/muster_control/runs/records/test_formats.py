@@ -108,6 +108,7 @@ def test_of_long_tracks_moments_are_left_out_evenly_as_they_are_read(most):
         assert count == len(every.times_s)
 
 
+@pytest.mark.long
 def test_tracks_of_a_long_run_are_written_by_parts(tmp_path):
     """The memory that it takes does not grow with them."""
     mission = Mission(robots=tuple(Robot(id=f"r_{k}", position=(0.0, k)) for k in range(5)), tasks=())

@@ -43,6 +43,7 @@ def test_150_orders_that_wait_are_all_applied_by_one_new_plan():
     assert set(report["tasks_done"]) == {task.id for task in MISSION.tasks} | {f"n_{k}" for k in range(150)}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("crash", [5, pytest.param(15, marks=pytest.mark.long)])
 def test_a_run_that_is_killed_within_a_burst_loses_no_order(crash):
     burst = [(5.0, "event", new_task(k)) for k in range(6)]

@@ -124,6 +124,7 @@ def texts(draw: st.DrawFn) -> str:
     return text
 
 
+@pytest.mark.long
 @given(text=texts(), value=VALUES, data=st.data())
 def test_an_edit_is_exact_or_refused(text: str, value: Any, data: st.DataObject) -> None:
     before = data_of(text) if _is_mission(text) else None
