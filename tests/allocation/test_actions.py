@@ -245,7 +245,6 @@ def test_the_smallest_change_is_never_at_a_robot_that_cannot():
     assert smallest_as_is(Problem.compile(alone), [[]], 0, judge) is None
 
 
-@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("seed", range(4))
 def test_bounds_hold_with_actions(seed):
     """The best of a long search is never below what is proven."""

@@ -187,7 +187,6 @@ def test_auctions_of_every_kind_are_admissible(number, name):
         admissible(problem, "auction", Stop(), bid=bid, placement=placement, winner=winner)
 
 
-@pytest.mark.long(keep=14)
 @pytest.mark.parametrize("name", [case(name) for name in SHIPPED])
 def test_markets_are_admissible_or_refused(name):
     problem = Problem.compile(muster.load(name))

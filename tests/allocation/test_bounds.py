@@ -161,7 +161,6 @@ def test_paths_tell_nearly_all_of_what_clusters_far_apart_cost():
     assert 0.95 * best < least_arrivals_on_paths(problem, problem.allowed, 0.0) / 12 <= best * (1 + ROUNDING)
 
 
-@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("objective", OBJECTIVES)
 def test_a_bound_that_was_cut_short_holds_and_says_so(objective):
     problem = Problem.compile(muster.load("31T-6R50"), objective)

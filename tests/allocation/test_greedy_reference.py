@@ -77,7 +77,6 @@ class Reference:
         return True
 
 
-@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("objective", ["max", "total"])
 @pytest.mark.parametrize("seed", range(4))
 def test_the_core_chooses_as_the_published_algorithm(seed, objective):

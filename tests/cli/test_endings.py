@@ -77,7 +77,6 @@ CASES = [
 ]
 
 
-@pytest.mark.long(keep=21)
 @pytest.mark.parametrize(
     ("arguments", "ending", "code"), CASES, ids=lambda value: " ".join(value) if isinstance(value, list) else None
 )

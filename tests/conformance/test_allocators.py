@@ -49,7 +49,7 @@ def test_every_task_left_out_has_a_reason_for_every_robot(allocator, seed):
         assert {reason.reason for reason in item.reasons} <= set(REASONS)
 
 
-@pytest.mark.long(keep=10)
+@pytest.mark.long(keep=21)
 @every_allocator
 @pytest.mark.parametrize("name", ["31T-6R50", "market-rescue", "eil51-5"])
 def test_the_same_seed_and_iterations_give_the_same_plan(allocator, name):

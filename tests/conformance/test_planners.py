@@ -46,7 +46,7 @@ def kept(space, ends, planner, answer):
     return True
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=5)
 @every_planner
 @settings(max_examples=25, deadline=None)
 @given(data=st.data())

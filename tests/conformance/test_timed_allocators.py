@@ -124,7 +124,6 @@ def bare(plan):
     return muster.Plan(routes=tuple(muster.Route(route.robot, route.tasks) for route in plan.routes))
 
 
-@pytest.mark.long(keep=42)
 @pytest.mark.parametrize("allocator", [name for name, a in ALLOCATORS.items() if a.can == ALL])
 @pytest.mark.parametrize("seed", range(20))
 def test_plans_with_all_rules_are_admissible_and_their_figures_true(allocator, seed):

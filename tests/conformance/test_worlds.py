@@ -169,7 +169,6 @@ def test_what_is_out_of_range_is_told(world_of, wrong, message):
         world_of(mission(robot()), **wrong)
 
 
-@pytest.mark.long(keep=3)
 @every_kind
 def test_a_world_made_of_a_snapshot_goes_on_as_the_one_of_which_it_is(world_of, kind):
     team = mission(robot("a", **kind), robot("b", position=(0.0, 5.0), **kind), robot("c", position=(0.0, 9.0), **kind))

@@ -49,7 +49,7 @@ def test_the_schema_that_ships_is_that_of_the_model():
     assert shipped == json_schema.schema_text()
 
 
-@pytest.mark.long(keep=5)
+@pytest.mark.long(keep=10)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_the_schema_accepts_shipped_missions(name, validator):
     assert list(validator.iter_errors(plain_data(mission_path(name).read_text(encoding="utf-8")))) == []

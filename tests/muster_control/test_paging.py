@@ -185,7 +185,6 @@ def test_older_plans_and_versions_are_listed_when_they_are_asked_for(site, chrom
     page.close()
 
 
-@pytest.mark.long
 def test_missions_are_found_by_all_words_of_their_names_and_ids(site):
     with httpx.Client(base_url=f"{site[0]}/api/v1", timeout=60) as http:
 

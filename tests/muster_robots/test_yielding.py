@@ -169,7 +169,6 @@ def test_one_works_where_another_waits_and_nobody_touches():
     assert math.dist(places["b"], (4, 0)) < 0.15
 
 
-@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("heard_share", [0.2, 0.4, 0.7, 1.0])
 @pytest.mark.parametrize("work", [(0.0, 0.0), (0.3, 0.2)])
 def test_two_that_meet_at_one_place_do_not_stand_off_where_one_is_heard_late(heard_share, work):

@@ -72,7 +72,7 @@ PAIRS = [
 ]
 
 
-@pytest.mark.long(keep=3)
+@pytest.mark.long(keep=9)
 @pytest.mark.parametrize(("name", "peer", "objective"), PAIRS)
 def test_plans_are_admissible_and_worth_what_the_peer_says(name, peer, objective):
     mission = large_mission(12, 3) if name.startswith("uniform") else muster.load(name)

@@ -66,7 +66,6 @@ def records(table, **wanted):
     return [record for record in table.records() if wanted.items() <= record.items()]
 
 
-@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("number", ROUTES)
 def test_calculated_usages_are_the_published_ones(tables, number):
     rows = tables[number].records()
@@ -139,7 +138,6 @@ def test_what_must_hold_of_published_plans_that_are_flown(plan, mission):
             assert flown.report.starts_s[task.id] >= flown.report.ends_s[before] - 1e-9
 
 
-@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("mission", ACTIONS)
 def test_flown_is_planned_where_no_robot_is_in_the_way(mission):
     """With the ways within tasks in the plan: the thesis is 3 to 16 % off."""

@@ -94,7 +94,6 @@ PLANTED = {  # which seed finds the fault, or one soon after it, and what it is:
 }
 
 
-@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("fault", PLANTED)
 def test_a_fault_of_the_protocol_is_found(monkeypatch, fault):
     """A test of the campaign; where other scenes take the place of these, other seeds will do."""

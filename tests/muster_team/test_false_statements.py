@@ -82,7 +82,6 @@ def test_facts_that_are_not_so_are_known_to_all_and_end_nobody(facts, unowned):
     assert owned == dict.fromkeys(["new", *(task for task in TASKS if task not in unowned)], 1)
 
 
-@pytest.mark.long(keep=5)
 @pytest.mark.parametrize(
     "claims",
     [

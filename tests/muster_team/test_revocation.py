@@ -145,7 +145,6 @@ REFUSED = [
 ]
 
 
-@pytest.mark.long(keep=4)
 @pytest.mark.parametrize("order", REFUSED)
 def test_who_may_not_revoke_is_refused_here_and_by_those_that_hear_it(order):
     team = Team()

@@ -52,7 +52,6 @@ def differing(net):
     return [notice for node in net.nodes.values() for notice in node.notices if notice.kind == "differs"]
 
 
-@pytest.mark.long(keep=13)
 @pytest.mark.parametrize("times", [False, True], ids=["plain", "timed"])
 @pytest.mark.parametrize("grid", [False, True], ids=["anywhere", "grid"])
 @pytest.mark.parametrize("seed", range(5))

@@ -37,7 +37,6 @@ def mission(tmp_path, robot):
     return muster.load(str(file))
 
 
-@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(("steps", "share"), [(1, 0.25), (5, 0.45), (10, 0.55)])
 def test_a_robot_on_the_ground(tmp_path, steps, share):
     """Around a square's corners, which it takes turning on the spot."""

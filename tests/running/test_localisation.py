@@ -61,7 +61,6 @@ def test_odometry_leads_astray_and_lasers_back(world):
         assert error < (0.08 if "rtk" in localise else 0.03)
 
 
-@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("world", WORLDS)
 def test_tags_bring_a_drone_back(world):
     drone = Robot(
@@ -78,7 +77,6 @@ def test_tags_bring_a_drone_back(world):
     assert back < 0.05
 
 
-@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("world", WORLDS)
 def test_who_steers_by_its_true_pose_goes_where_it_is_sent(world):
     """Its telemetry has the estimate all the same."""

@@ -29,7 +29,6 @@ def one_way_loop(**rules):
     return Mission(rules=Rules(objective="makespan", **rules), lanes=LOOP, robots=robots, tasks=tasks)
 
 
-@pytest.mark.long(keep=3)
 @pytest.mark.parametrize("allocator", ["search", "greedy", "auction", "consensus-bundle", "market", "genetic"])
 def test_allocators_plan_along_one_way_lanes(allocator):
     mission = one_way_loop()

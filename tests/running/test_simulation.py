@@ -108,7 +108,6 @@ DELAYED = [
 ]
 
 
-@pytest.mark.long(keep=5)
 @pytest.mark.parametrize("one", DELAYED, ids=lambda task: task.id)
 @pytest.mark.parametrize("at_s", [1.0, None])
 def test_a_delay_comes_on_top_of_what_the_work_takes(one, at_s):

@@ -139,7 +139,6 @@ def test_an_event_of_another_kind_changes_nothing():
     assert known(state) == before
 
 
-@pytest.mark.long(keep=33)
 @pytest.mark.parametrize("kind", DATA)
 def test_a_checkpoint_keeps_what_an_event_has_changed(kind):
     """After all kinds, this one last."""

@@ -71,7 +71,7 @@ def test_a_roadmap_connects_what_the_free_cells_connect(seed):
     assert len({(int(a), int(b)) for a, b in zip(part, group, strict=True)}) == count == len(set(group))
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=5)
 @pytest.mark.parametrize("seed", range(10))
 def test_a_robot_on_an_edge_touches_no_blocked_cell(seed):
     grid = noisy_grid(seed)

@@ -81,7 +81,6 @@ def test_a_grid_anywhere(origin):
     assert metres(space, start, end) == pytest.approx(0.05 * (3 + 2 * math.hypot(0.5, 0.5)), rel=1e-9)
 
 
-@pytest.mark.long(keep=12)
 @pytest.mark.parametrize("seed", range(30))
 def test_random_cells_as_by_brute_force(seed):
     random = np.random.default_rng(seed)

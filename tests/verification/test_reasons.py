@@ -152,7 +152,6 @@ def reasons_judged(seed):
                 yield word, places.is_true(word) and said_of_it.get(word, True), bool(places.left()), verdict
 
 
-@pytest.mark.long(keep=5)
 @pytest.mark.parametrize("seed", range(12))
 def test_no_true_reason_is_rejected_and_false_ones_are_found(seed):
     for word, is_true, could, verdict in reasons_judged(seed):

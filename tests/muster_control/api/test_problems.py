@@ -22,7 +22,6 @@ def require_problem(answer, status):
     return found
 
 
-@pytest.mark.long(keep=16)
 @pytest.mark.parametrize(
     ("method", "path", "status"),
     [

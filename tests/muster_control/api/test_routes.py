@@ -206,7 +206,6 @@ def test_a_run_is_acted_upon(http, plan):
     assert {"run.start", "run.speed", "run.event", "run.cancel"} <= set(verbs)
 
 
-@pytest.mark.long
 def test_settings_of_a_run_name_no_parameters(http, plan):
     refused = http.post("/runs", json={"plan": plan, "settings": {"who": "me"}})
     assert (refused.status_code, refused.json()["error"][:13]) == (400, "who: unknown;")
@@ -231,7 +230,6 @@ def test_what_the_server_is(http):
     assert "search" in [allocator["name"] for allocator in http.get("/allocators").json()]
 
 
-@pytest.mark.long
 def test_the_description_lists_every_route_and_needs_nothing_from_elsewhere(http):
     described = http.get("/openapi.json").json()
     assert described["openapi"].startswith("3.1")

@@ -60,7 +60,6 @@ def test_an_unknown_parameter_is_refused_as_over_http(url, http, plan):
     assert "afer" in json.loads(refused.value.response.body)["error"]
 
 
-@pytest.mark.long
 def test_nobody_listens_without_a_token(guarded):
     url, tokens = guarded
     with pytest.raises(InvalidStatus) as refused:

@@ -236,7 +236,6 @@ def test_what_a_server_cannot_do_in_a_simulation_is_refused_with_the_reason(fold
         assert err.startswith(said)
 
 
-@pytest.mark.long(keep=20)
 @pytest.mark.parametrize(
     ("server", "said"),
     [

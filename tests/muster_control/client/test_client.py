@@ -94,7 +94,6 @@ def test_a_report_is_that_of_a_simulation(control):
     assert report.tasks_lost == here.tasks_lost
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     ("options", "message"),
     [

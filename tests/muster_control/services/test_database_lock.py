@@ -147,7 +147,6 @@ def test_a_lock_that_was_lost_is_taken_anew_and_nothing_is_written_before(postgr
         _refused(postgresql_url, "in use by another server")
 
 
-@pytest.mark.long
 def test_after_an_outage_one_of_two_servers_has_the_database(postgresql, postgresql_url):
     with alone_with(postgresql_url) as first, _store(postgresql_url, first) as old:
         postgresql.stop()

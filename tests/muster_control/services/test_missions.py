@@ -60,7 +60,6 @@ def outcomes(store):
     return [(action.verb, action.outcome) for action in reversed(store.actions.list())]
 
 
-@pytest.mark.long(keep=32)
 @pytest.mark.parametrize("name", shipped_entries())
 def test_a_shipped_mission_is_listed_as_what_it_is(name, tmp_path):
     """What is read off its lines is what it means; and with the files beside it, it is the same mission."""

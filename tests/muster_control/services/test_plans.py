@@ -265,7 +265,6 @@ def test_two_plans_side_by_side(with_services):
     with_services(story)
 
 
-@pytest.mark.long
 def test_the_allocators_are_asked_for_once(with_services, monkeypatch):
     async def story(services):
         first = await services.plans.allocators()

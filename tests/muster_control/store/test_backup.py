@@ -49,7 +49,7 @@ def rows(store):
         }
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long(keep=2)
 def test_a_copy_goes_into_either_database(full, database_url, other_url, tmp_path):
     file = tmp_path / "copy.db"
     backup(database_url, file)
@@ -63,7 +63,6 @@ def test_a_copy_goes_into_either_database(full, database_url, other_url, tmp_pat
             connection.execute(text("DELETE FROM entries"))
 
 
-@pytest.mark.long(keep=1)
 def test_a_copy_is_one_file_for_its_owner(full, database_url, tmp_path):
     file = tmp_path / "copies" / "copy.db"
     file.parent.mkdir()

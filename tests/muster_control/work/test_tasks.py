@@ -92,7 +92,6 @@ def test_plan_with_everything_that_can_be_asked(asked, plan):
     assert again["objective"]["value"] <= plan["objective"]["value"]
 
 
-@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(
     ("wish", "line"),
     [
@@ -159,7 +158,6 @@ def test_a_long_history_is_thinned_to_its_end():
     assert thinned([]) == []
 
 
-@pytest.mark.long(keep=1)
 @pytest.mark.parametrize(("bound", "why"), [(None, ""), ("quick", "planning was stopped before a bound was proven")])
 def test_planning_that_is_stopped_at_once_gives_the_first_plan(asked, bound, why):
     stop_request = StopRequest()

@@ -267,7 +267,6 @@ def test_photos_and_regions_of_interest_are_named():
     assert "DO_SET_CAM_TRIGG_DIST" in told
 
 
-@pytest.mark.long(keep=106)
 @pytest.mark.parametrize("command", sorted({*NAMES, 9999} - {*READ}))
 def test_each_other_command_is_named_or_refused_by_name(command, tmp_path):
     data = plan(item(16, FIRST), item(command, THIRD, 1, 2, 3, 4))

@@ -131,7 +131,6 @@ def test_heights_of_drones_stand_on_sheets_and_overview(tmp_path):
     assert "in the air, 24 m up" in pages(printed(given, "overview", altitude_step=12.0).contents["overview.pdf"])[0]
 
 
-@pytest.mark.long(keep=1)
 @pytest.mark.parametrize("form", ["sheets", "overview", "xlsx"])
 def test_a_mission_in_space_without_a_type_or_start(form, tmp_path):
     text = (

@@ -141,7 +141,7 @@ def test_endpoints_that_are_none(endpoint):
         MavlinkFleet(mission(1), {"r_0": endpoint})
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=8)
 @KINDS
 @pytest.mark.parametrize("offboard", [False, True])
 @pytest.mark.parametrize("after_s", [0.1, 1.5, 3.0, 4.5, 6.0, 7.5])

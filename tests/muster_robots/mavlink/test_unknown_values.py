@@ -56,7 +56,6 @@ def test_numbers_that_are_none_are_no_place_and_no_heading():
     assert talk.session.telemetry() == before
 
 
-@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("verb", ["hear", "tick", "hold"])
 def test_an_error_over_one_drone_ends_its_part_alone_and_all_hover(verb):
     there = mission(2)

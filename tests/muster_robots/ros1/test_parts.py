@@ -181,7 +181,7 @@ def test_every_kind_of_robot_gets_there_within_its_limits(kinematics, heading, g
     assert math.dist(last[0, :2], goal) < 0.1
 
 
-@pytest.mark.long(keep=1)
+@pytest.mark.long(keep=2)
 @pytest.mark.parametrize("avoidance", ["orca", "rvo", "hrvo"])
 @pytest.mark.parametrize("kinematics", ["holonomic", "differential-drive"])
 def test_robots_that_meet_head_on_pass_without_touching(kinematics, avoidance):

@@ -47,7 +47,7 @@ def test_without_faults_it_is_the_central_one(name, bundle_size):
         assert plan.book.rounds == central.book.rounds
 
 
-@pytest.mark.long(keep=3)
+@pytest.mark.long(keep=8)
 @pytest.mark.parametrize("seed", range(30))
 def test_with_faults_every_task_has_one_owner(seed):
     mission = muster.load("24T-5R")

@@ -55,7 +55,7 @@ def assert_as_in_one_process(problem, terms):
         assert plan.book.bids == central.book.bids
 
 
-@pytest.mark.long(keep=2)
+@pytest.mark.long(keep=6)
 @pytest.mark.parametrize(("bid", "placement", "winner"), ALL_TERMS)
 def test_without_faults_plan_and_book_are_those_of_the_auction_in_one_process(bid, placement, winner):
     for name in ("auction-1", "24T-5R"):
