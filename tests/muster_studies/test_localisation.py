@@ -6,6 +6,7 @@ from muster_studies.effort import Effort
 from muster_studies.registry import study_named
 
 pytest.importorskip("scipy")
+pytestmark = pytest.mark.long
 
 
 @pytest.fixture(scope="module")
@@ -14,7 +15,6 @@ def tables():
     return {table.number: table.records() for table in report.tables}
 
 
-@pytest.mark.long
 def test_a_map_keeps_the_error_bounded_and_scans_are_better_than_wheels(tables):
     odometry, scans, particles = tables["tracking"]
     assert max(particles["mean error m"], scans["mean error m"]) < odometry["mean error m"]

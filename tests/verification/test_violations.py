@@ -280,7 +280,6 @@ def test_the_objective_is_the_missions_unless_the_caller_names_another(name):
     assert found(verify(pair(), plan, objective="max")) == [("objective", None, None)]
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(("named", "refused"), [("pair", False), (None, False), ("other", True)])
 def test_a_plan_that_names_another_mission(named, refused):
     mission = Mission(name="pair", robots=(Robot(id="r", position=(0, 0)),), tasks=(Task(id="a", position=(1, 0)),))
