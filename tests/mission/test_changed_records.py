@@ -8,12 +8,12 @@ from importlib import import_module
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.mission.strategies import missions
 
 import muster.mission
 from muster.mission.errors import MissionError, MusterError, ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.records import Checked, specified
-from tests.mission.strategies import missions
 
 
 def kinds_of_records() -> Iterator[type[Checked]]:
@@ -36,7 +36,7 @@ def test_every_default_is_read_as_itself():
             faults = []
             read = field.metadata["kind"].read(field.default, (field.name,), faults)
             assert not faults, (kind, field.name)
-            assert read == field.default and type(read) is type(field.default), (kind, field.name)
+            assert (read, type(read)) == (field.default, type(field.default)), (kind, field.name)
             seen += 1
     assert seen > 50
 
