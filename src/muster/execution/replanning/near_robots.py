@@ -20,9 +20,9 @@ from muster.mission.values.arrays import Floats
 from muster.motion.actions import duration_of
 from muster.state.task_ledger import Ledger
 
-PART_TASKS = 40
-"""Tasks in the routes of the robots that an order is tried with; at least two robots are. A fleet with fewer open tasks
-than four times as many is planned as a whole."""
+PART_TASKS, PART_ROBOTS = 40, 16
+"""An order is tried with at least two robots, until their routes have so many tasks or they are so many. A fleet is
+planned as a whole that has fewer than four times so many open tasks, and fewer than twice so many robots."""
 
 
 @dataclass
@@ -46,7 +46,7 @@ class NearRobots:
         robots share stations, or a task of a route in the part is tied to one outside.
         """
         present = self._present
-        if sum(len(state.route) for state in present) < 4 * PART_TASKS or not all(map(self._is_alone, orders)):
+        if not _is_large(present) or not all(map(self._is_alone, orders)):
             return None
         robots = dict.fromkeys(name for order in orders for name in self._nearest(self.ledger.tasks[order], present))
         return self._part(robots, orders)
@@ -65,8 +65,9 @@ class NearRobots:
         """Robots with the tasks of their routes, and more; None: that is no small part, or is tied to what is not."""
         tasks = [*more, *dict.fromkeys(task for name in robots for task in self.crew[name].route)]
         named = {name for task in tasks for name in tasks_named_by(self.ledger.tasks[task])}
-        routed = sum(len(state.route) for state in self._present)
-        if not robots or 2 * len(tasks) > routed or routed < 4 * PART_TASKS or any(map(self.ledger.is_open, named)):
+        present = self._present
+        is_small = 2 * (len(robots) + len(tasks)) <= len(present) + _routed(present)
+        if not robots or not is_small or not _is_large(present) or any(map(self.ledger.is_open, named)):
             return None
         return Part(robots, tasks)
 
@@ -115,6 +116,16 @@ class NearRobots:
         return known[1:]
 
 
+def _routed(states: Sequence[RobotState]) -> int:
+    """The number of tasks in the routes of robots."""
+    return sum(len(state.route) for state in states)
+
+
+def _is_large(present: Sequence[RobotState]) -> bool:
+    """Whether a fleet is too large to be planned as a whole for each order."""
+    return len(present) >= 2 * PART_ROBOTS or _routed(present) >= 4 * PART_TASKS
+
+
 def _free_at(states: Sequence[RobotState]) -> tuple[Floats, Floats]:
     """(m, 3) where robots are when their work under way is done, and (m,) in how many seconds that is."""
     busy = [state.work is not None and state.activity is Activity.WORKING for state in states]
@@ -135,7 +146,7 @@ def _first_of_each(states: Sequence[RobotState], ranks: Sequence[Floats]) -> lis
     chosen: dict[str, int] = {}
     for row in np.stack([np.argsort(rank, kind="stable") for rank in ranks], axis=1).tolist():
         for k in row:
-            if len(chosen) >= 2 and sum(chosen.values()) >= PART_TASKS:
+            if len(chosen) >= PART_ROBOTS or (len(chosen) >= 2 and sum(chosen.values()) >= PART_TASKS):
                 return list(chosen)
             chosen[states[k].robot.id] = len(states[k].route)
     return list(chosen)

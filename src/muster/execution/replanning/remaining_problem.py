@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from muster.allocation.fixed import admissible_alone
-from muster.execution.replanning.relations import BY_WHICH_TASKS_ARE_BOUND, Binding
+from muster.execution.replanning.relations import BY_WHICH_TASKS_ARE_BOUND, UNBOUND, Binding
 from muster.execution.replanning.travel import Spot, Travel
 from muster.execution.replanning.worthwhile import Heading
 from muster.mission.goods import Amount, as_amount, by_commodity
@@ -343,9 +343,9 @@ def _drop_transports_without_hope(rest: RemainingMission, hopeful: dict[str, Tas
 def _robots_for(rest: RemainingMission, task: Task) -> tuple[tuple[str, ...] | None, str]:
     """The only robots of the crew that may do a task, None: all; and why there is none, if so."""
     refused = rest.refusals.get(task.id, {})
-    binding = rest.bindings.get(task.id, Binding())
+    binding = rest.bindings.get(task.id, UNBOUND)
     lock = task.only_robots
-    if lock is None and not refused and binding == Binding():
+    if lock is None and not refused and binding == UNBOUND:
         return None, ""
     crew = [snapshot.robot.id for snapshot in rest.crew]
     meant = crew if lock is None else [name for name in lock if name in crew]
