@@ -20,6 +20,7 @@ from muster.execution.replanning.travel import Spot, Travel
 from muster.execution.replanning.worthwhile import Heading
 from muster.mission.goods import Amount, as_amount, by_commodity
 from muster.mission.model import Mission, Robot, Station, Task
+from muster.mission.task_relations import tasks_named_by
 from muster.model.energy_under_way import Held, with_held
 from muster.model.measured_energy import EnergyLeft
 from muster.model.parts import Begun
@@ -290,8 +291,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
             hopeless[task.id] = why
         else:
             hopeful[task.id] = _for_robots(task.waiting_for(_open_prerequisites(rest, task)), robots)
-    model = UnderWay(rest.mission, rest.tasks, rest.ignored)
-    units = [unit for unit in {model.unit(task.id) for task in rest.tasks} if len(unit) > 1]
+    units = _units(rest)
     _drop_units_without_hope(units, hopeful, hopeless)
     _drop_transports_without_hope(rest, hopeful, hopeless)
     sure = {snapshot.task for snapshot in rest.crew if snapshot.task is not None}
@@ -307,6 +307,14 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
     _drop_units_without_hope(units, hopeful, hopeless)
     _drop_transports_without_hope(rest, hopeful, hopeless)
     return [tied_among(task, hopeful) for task in hopeful.values()], hopeless
+
+
+def _units(rest: RemainingMission) -> list[tuple[str, ...]]:
+    """The sets of several tasks that begin together: tasks that name no others are in none."""
+    if not any(map(tasks_named_by, rest.tasks)):
+        return []
+    model = UnderWay(rest.mission, rest.tasks, rest.ignored)
+    return [unit for unit in {model.unit(task.id) for task in rest.tasks} if len(unit) > 1]
 
 
 def _for_robots(task: Task, robots: tuple[str, ...] | None) -> Task:
