@@ -44,6 +44,7 @@ from muster.execution.timing.punctuality import Punctuality
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
+from muster.mission.system.garbage import collector_paused
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
@@ -500,6 +501,7 @@ class Executor:
             part=part,
         )
 
+    @collector_paused()
     def _plan_again(self) -> None:
         asked, self._asked = self._asked, []
         revision = self._with_orders([cause.task_id for cause in asked if isinstance(cause, NewTask)], asked)

@@ -281,6 +281,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
     """The tasks that can be planned, as they are now; and why the others cannot."""
     hopeless: dict[str, str] = {}
     hopeful: dict[str, Task] = {}
+    tied = {task.id for task in rest.tasks if tasks_named_by(task)}
     for task in rest.tasks:
         robots, why = _robots_for(rest, task)
         if task.id in rest.expired:
@@ -290,7 +291,10 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
         elif robots is not None and not robots:
             hopeless[task.id] = why
         else:
-            hopeful[task.id] = _for_robots(task.waiting_for(_open_prerequisites(rest, task)), robots)
+            named = task.waiting_for(_open_prerequisites(rest, task)) if task.id in tied else task
+            hopeful[task.id] = _for_robots(named, robots)
+    if not tied:
+        return list(hopeful.values()), hopeless
     units = _units(rest)
     _drop_units_without_hope(units, hopeful, hopeless)
     _drop_transports_without_hope(rest, hopeful, hopeless)
@@ -310,9 +314,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
 
 
 def _units(rest: RemainingMission) -> list[tuple[str, ...]]:
-    """The sets of several tasks that begin together: tasks that name no others are in none."""
-    if not any(map(tasks_named_by, rest.tasks)):
-        return []
+    """The sets of several tasks that begin together."""
     model = UnderWay(rest.mission, rest.tasks, rest.ignored)
     return [unit for unit in {model.unit(task.id) for task in rest.tasks} if len(unit) > 1]
 
@@ -392,7 +394,7 @@ def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
     travel = "euclidean" if mission.driven_lanes is None else "lanes"
     rules = replace(mission.rules, travel=travel, capacity_reserve=0.0, return_to_start=False)
     scores = mission.suitability
-    return mission.at_once(
+    return mission.what_is_left(
         rules=rules,
         map=None,
         travel=None,
