@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from importlib import import_module
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from tests.mission.strategies import missions
 
@@ -49,6 +49,15 @@ def test_a_changed_record_is_the_one_that_is_made_anew(mission: Mission, data: s
     names = [f.name for f in dataclasses.fields(one) if f.name != "extra"]
     values = {name: getattr(other, name) for name in data.draw(st.lists(st.sampled_from(names), max_size=4))}
     assert outcome(lambda: one.changed(**values)) == outcome(lambda: dataclasses.replace(one, **values))
+
+
+@given(missions(), st.data())
+def test_what_is_left_of_a_mission_is_the_one_that_is_made_anew(mission: Mission, data: st.DataObject):
+    count = data.draw(st.integers(1, len(mission.robots)))
+    changes = {"robots": mission.robots[:count], "tasks": (), "travel": None, "rules": mission.rules.changed()}
+    made = outcome(lambda: mission.at_once(**changes))
+    assume(not isinstance(made[0], type))  # it is one
+    assert outcome(lambda: mission.what_is_left(**changes)) == made
 
 
 def outcome(make):
