@@ -140,9 +140,7 @@ class LanePaths:
     def _ways(self, on: JoinedLanes) -> core.LaneWays:
         metres = np.linalg.norm(on.points[on.arcs[:, 1]] - on.points[on.arcs[:, 0]], axis=1)
         seconds = metres / np.minimum(self.times.speed_mps, self._speeds(on))
-        return core.LaneWays(
-            on.points, on.arcs, seconds, turn=self.times.turn_s, stop=self.times.stop_s
-        )
+        return core.LaneWays(on.points, on.arcs, seconds, turn=self.times.turn_s, stop=self.times.stop_s)
 
 
 def _shown(point: Floats) -> str:
