@@ -8,7 +8,7 @@ from tests.execution.world import World, carry_out
 from muster.execution import Executor, Standing, travel_of
 from muster.execution.replanning import worthwhile as gains
 from muster.execution.replanning.insertion import Insertion
-from muster.execution.replanning.near_robots import PART_TASKS, NearRobots
+from muster.execution.replanning.near_robots import ORDER_ROBOTS, PART_ROBOTS, PART_TASKS, NearRobots
 from muster.execution.replanning.worthwhile import Heading, worthwhile
 from muster.mission.model import Event, Mission, Robot, Rules, Task
 from muster.mission.plan import Plan
@@ -29,18 +29,21 @@ def orders(count, at_s=0.0, **more):
 
 
 class Counted(Insertion):
-    """Counts the tasks of each problem that is planned."""
+    """Counts the tasks of each problem that is planned, and the robots."""
 
     def __call__(self, rest):
         planned.append(len(rest.tasks))
+        crews.append(len(rest.crew))
         return super().__call__(rest)
 
 
 planned = []
+crews = []
 
 
 def executor_of(mission, stream):
     planned.clear()
+    crews.clear()
     world = World(mission)
     standing = Standing(until_s=None, orders=stream, improver=None)
     replan = Counted(travel_of(mission))
@@ -99,6 +102,24 @@ def test_what_nobody_can_do_is_planned_with_all_once_and_said():
     go_on(executor, 3.5)
     assert "skill" in executor.state.left_out["never"]
     assert planned[-1] <= 3 * PART_TASKS
+
+
+@pytest.mark.parametrize("open_tasks", [0, 5, 60])
+def test_an_order_to_many_robots_is_planned_with_few_however_many_tasks_they_have(open_tasks):
+    late = [*orders(1, 2.0), *orders(1, 3.0), *orders(5, 4.0)]
+    executor, _ = executor_of(fleet(5 * PART_ROBOTS), [*orders(open_tasks), *late])
+    go_on(executor, 4.5)
+    assert crews[-3:-1] == [PART_ROBOTS, PART_ROBOTS]
+    assert ORDER_ROBOTS <= crews[-1] <= 5 * ORDER_ROBOTS
+    begun = {task for state in executor.crew.values() for task in (*state.route, *state.done)}
+    assert len(begun) == open_tasks + 7
+    assert not [event for event in executor.events if event.kind == "replanned" and event.data["moved"]]
+
+
+def test_a_fleet_of_few_robots_with_few_tasks_is_planned_as_a_whole():
+    executor, _ = executor_of(fleet(2 * PART_ROBOTS - 1), [*orders(10), *orders(1, 2.0)])
+    go_on(executor, 2.5)
+    assert crews[-1] == 2 * PART_ROBOTS - 1
 
 
 def test_few_tasks_are_planned_as_a_whole():

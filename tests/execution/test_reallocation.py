@@ -7,6 +7,7 @@ from tests.execution.world import World
 from tests.random_missions import random_mission, with_travel_tables
 
 import muster
+from muster.allocation import fixed
 from muster.allocation.algorithms import greedy
 from muster.allocation.fixed import admissible_part
 from muster.execution.executor import Executor
@@ -14,7 +15,7 @@ from muster.execution.replanning.reallocation import Reallocation, reasons_in_on
 from muster.execution.replanning.remaining_problem import remaining_problem
 from muster.execution.replanning.travel import travel_of, way_of
 from muster.generation.uniform import large_mission
-from muster.mission.model import Action, Event, Map, Zone
+from muster.mission.model import Action, Event, Map, Mission, Robot, Rules, Task, Zone
 from muster.mission.plan import Reason
 from muster.model.problem import Problem
 
@@ -191,6 +192,30 @@ def test_the_admissible_part_of_routes_is_admissible_and_in_order(seed):
     assert not [v for v in muster.verify(mission, plan).violations if v.kind not in ("unassigned", "figure")]
     for whole, kept in zip(routes, part, strict=True):
         assert [j for j in whole if j in kept] == kept
+
+
+@pytest.mark.parametrize("deadline_s", [None, 5000.0, 40.0])
+@pytest.mark.parametrize("after", [(), ("t2",)])
+def test_routes_that_fit_are_kept_without_looking_at_each_task(monkeypatch, deadline_s, after):
+    mission = Mission(
+        robots=tuple(Robot(id=f"r{k}", position=(5.0 * k, 0.0)) for k in range(2)),
+        tasks=tuple(
+            Task(
+                id=f"t{k}",
+                position=(7.0 * k % 20, 3.0 * k % 11),
+                deadline_s=deadline_s,
+                prerequisites=after if k == 5 else (),
+            )
+            for k in range(8)
+        ),
+        rules=Rules(objective="lateness"),
+    )
+    problem = Problem.compile(mission)
+    routes = [[0, 2, 4, 6], [7, 5, 3, 1]]
+    part = admissible_part(problem, routes)
+    assert sum(map(len, part)) == 8 or deadline_s == 40.0
+    monkeypatch.setattr(fixed, "_is_untied", lambda problem: False)
+    assert admissible_part(problem, routes) == part
 
 
 def test_of_routes_with_goods_who_picks_up_still_delivers():

@@ -131,12 +131,20 @@ def admissible_part(problem: Problem, routes: Routes) -> Routes:
 
 def _timed_part(problem: Problem, routes: Routes) -> Routes:
     """The part of routes that has a schedule: unit after unit is kept that fits with those before it."""
+    if _is_untied(problem) and core.Inspection(problem.core, routes).admissible:
+        return [list(route) for route in routes]
     kept = {j for i, route in enumerate(routes) for j in route[: len(problem.beginning(i))]}
     place = dict(sorted((j, k) for route in routes for k, j in enumerate(route)))  # the last of a team's places
     units = {tuple(sorted(_unit(problem, j) - kept)) for j in place.keys() - kept}
     pending = sorted(units, key=lambda unit: (max(place.get(j, 0) for j in unit), unit))
     kept = _fitting(problem, routes, kept, _whole(problem, pending, place, kept))
     return [[j for j in route if j in kept] for route in routes]
+
+
+def _is_untied(problem: Problem) -> bool:
+    """Whether each task is a unit of its own that waits for no other."""
+    model = problem.model
+    return len(model.units) == model.tasks and not any(model.awaited) and not model.parts.taken_on_by
 
 
 def _fitting(problem: Problem, routes: Routes, kept: set[int], units: Sequence[Sequence[int]]) -> set[int]:

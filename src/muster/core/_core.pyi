@@ -610,9 +610,9 @@ class LaneWays:
     The quickest ways along directed lanes for a robot that slows down for bends.
     """
 
-    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], ends: Sequence[tuple[int, int]], seconds: Sequence[float], *, turn: float, stop: float) -> None:
+    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], ends: Annotated[NDArray[numpy.int64], dict(order='C', device='cpu', writable=False)], seconds: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], *, turn: float, stop: float) -> None:
         """
-        Points (n, 2) and straight arcs between them, by number, each with the seconds that it takes. `turn` and `stop` are the seconds that a bend by a right angle takes for turning, and for stopping. Raises ValueError where these do not fit.
+        Points (n, 2) and straight arcs (m, 2) between them, by number, with the seconds (m,) that each takes. `turn` and `stop` are the seconds that a bend by a right angle takes for turning, and for stopping. Raises ValueError where these do not fit.
         """
 
     def lengths(self, starts: Sequence[int], goals: Sequence[int], threads: int) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64]]:

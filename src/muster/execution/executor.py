@@ -44,6 +44,7 @@ from muster.execution.timing.punctuality import Punctuality
 from muster.mission.errors import ParameterError
 from muster.mission.model import Event, Mission
 from muster.mission.plan import Plan
+from muster.mission.system.garbage import collector_paused
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
@@ -265,7 +266,7 @@ class Executor:
         asked = len(self._asked)
         self._changes.apply(self._due_at_once(event), self.now_s, reason, came_s)
         if event.door is not None:
-            self._forecast.forget()
+            self.forget_ways()
         if len(self._asked) == asked and event.robot_silent is None:
             self.emit(OtherEvent(kind="without_effect", content=plain(event)))
 
@@ -322,6 +323,11 @@ class Executor:
         """Note that a robot cannot do an open task, as is known before it is sent there: others do it, if they can."""
         if robot in self.crew and self.ledger.is_open(task) and robot not in self.ledger.refusals.get(task, {}):
             self._ask(TaskRefused(task=task, robot=robot, reason=reason))
+
+    def forget_ways(self) -> None:
+        """Forget what was found of ways: they are others from now on."""
+        self._forecast.forget()
+        self._energy.forget_ways()
 
     def go_other_ways(self, robots: Collection[str]) -> None:
         """Ways of robots under way turn out to be closed: they go by others, and stop where there are none.
@@ -495,6 +501,7 @@ class Executor:
             part=part,
         )
 
+    @collector_paused()
     def _plan_again(self) -> None:
         asked, self._asked = self._asked, []
         revision = self._with_orders([cause.task_id for cause in asked if isinstance(cause, NewTask)], asked)

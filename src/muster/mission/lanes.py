@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
 from typing import Any
 
 from muster.mission.place_types import Place
@@ -51,6 +52,11 @@ class Lanes(Checked):
         yield from _unknown_nodes(values["nodes"], values["edges"])
         yield from _one_place(values["nodes"])
         yield from _repeated(values["edges"])
+
+    @cached_property
+    def farthest_m(self) -> float:
+        """The greatest coordinate of its nodes, signs aside."""
+        return max(abs(c) for place in self.nodes.values() for c in place)
 
 
 def _unknown_nodes(nodes: Mapping[str, Point], edges: tuple[Lane, ...]) -> Iterator[Fault]:

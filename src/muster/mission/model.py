@@ -6,7 +6,7 @@ Units are SI; positions are metres in the map frame (ENU: x east, y north, z up)
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -128,6 +128,13 @@ class Mission(MissionData):
     def at_once(self, **changes: Any) -> Mission:
         """The mission, changed, without what happens or is found while it is carried out."""
         return replace(self, events=(), tags=(), found=(), **changes)
+
+    def what_is_left(self, **changes: Any) -> Mission:
+        """The same with changes that are not checked: robots and tasks of its own, some of them, as they are now."""
+        left = object.__new__(Mission)
+        own = {f.name: getattr(self, f.name) for f in fields(self)}
+        left.__dict__.update({**own, "events": (), "tags": (), "found": (), **changes})
+        return left
 
 
 def _html_table(title: str, items: Sequence[Robot] | Sequence[Task] | Sequence[Station], columns: Sequence[str]) -> str:

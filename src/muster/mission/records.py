@@ -38,6 +38,18 @@ _SPECIFIED: dict[type[Any], tuple[Field[Any], ...]] = {}
 _MISSING = object()
 Instead = tuple[str, Kind, str]
 """A key of files that may stand for another: its name, the kind of its value, and what it means."""
+
+
+class Check(NamedTuple):
+    """A field that is checked when an instance is made: its name, the kind of its values, its default and its path."""
+
+    name: str
+    kind: Kind
+    default: Any
+    at: Path
+
+
+_CHECKS: dict[type[Any], tuple[Check, ...]] = {}
 _Fillers = tuple[tuple[str, Callable[[], Any]], ...]
 
 
@@ -122,6 +134,13 @@ def specified(cls: type[Any]) -> tuple[Field[Any], ...]:
     return _SPECIFIED[cls]
 
 
+def checks_of(cls: type[Any]) -> tuple[Check, ...]:
+    """Return what is checked of the fields of a class when an instance is made in Python."""
+    if cls not in _CHECKS:
+        _CHECKS[cls] = tuple(Check(f.name, f.metadata["kind"], f.default, (key_of(f),)) for f in specified(cls))
+    return _CHECKS[cls]
+
+
 def all_keys(cls: type[Any]) -> tuple[Field[Any], ...]:
     """Its fields that a file may hold, and those of the classes beside it."""
     return (*specified(cls), *(f for part in cls.beside() for f in specified(part)))
@@ -155,12 +174,15 @@ class Checked:
     """The fields without any of which `settled` and `cross_check` have nothing to do; None: they always have."""
 
     def __post_init__(self) -> None:
+        self._check(checks_of(type(self)))
+
+    def _check(self, checks: Iterable[Check]) -> None:
+        """Read some fields, and check what lies between all of them."""
         faults: list[Fault] = []
-        for f in specified(type(self)):
-            value = getattr(self, f.name)
-            if value is None and f.default is None:
-                continue
-            object.__setattr__(self, f.name, f.metadata["kind"].read(value, (key_of(f),), faults))
+        for name, kind, default, at in checks:
+            value = getattr(self, name)
+            if value is not default:  # a default is a value that is read as itself
+                object.__setattr__(self, name, kind.read(value, at, faults))
         if not faults:
             for name, value in self.settled(self.__dict__).items():
                 object.__setattr__(self, name, value)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 from muster.mission.goods import Amount, Amounts, by_commodity
@@ -140,7 +139,7 @@ class Robot(RuleKeys, bearer="robot"):
     def from_time(self, now_s: float) -> Robot:
         """Return the robot available no sooner than at a time, with what is left of its shifts then."""
         if not self.shifts_s:
-            return replace(self, available_from_s=max(self.available_from_s, now_s))
+            return self.changed(available_from_s=max(self.available_from_s, now_s))
         return self._with_shifts(self._shifts_from(now_s))
 
     def busy(self, from_s: float, until_s: float) -> Robot:
@@ -148,7 +147,7 @@ class Robot(RuleKeys, bearer="robot"):
         if not self.shifts_s:
             ends_s = self.available_until_s
             ends_s = None if ends_s is None else max(ends_s, from_s)
-            return replace(self, available_from_s=from_s, available_until_s=ends_s)
+            return self.changed(available_from_s=from_s, available_until_s=ends_s)
         left = self._shifts_from(until_s)
         return self._with_shifts([(from_s, until_s), *left] if from_s < until_s else left)
 
@@ -158,7 +157,7 @@ class Robot(RuleKeys, bearer="robot"):
 
     def _with_shifts(self, shifts: Sequence[Window]) -> Robot:
         (begins, _), (_, ends) = shifts[0], shifts[-1]
-        return replace(self, shifts_s=tuple(shifts), available_from_s=begins, available_until_s=ends)
+        return self.changed(shifts_s=tuple(shifts), available_from_s=begins, available_until_s=ends)
 
     def file_values(self) -> Mapping[str, Any]:
         return _AVAILABLE if self.shifts_s else {}

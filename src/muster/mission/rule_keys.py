@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 from muster.mission.declared_rules import Bearer, keys_beside
 from muster.mission.errors import PluginError
-from muster.mission.records import Checked, key_of, part_of, read_further, specified
+from muster.mission.records import Checked, checks_of, key_of, part_of, read_further, specified
 from muster.mission.value_types import Fault, Key, shown
+from muster.mission.values.keywords import require_known
 
 K = TypeVar("K", bound=Checked)
 _BEARERS: dict[type[Any], Bearer] = {}
@@ -36,6 +37,18 @@ class RuleKeys(Checked):
             if faults:
                 raise self.refusal(faults)
         super().__post_init__()
+
+    def changed(self, **values: Any) -> Self:
+        """Return a copy in which some fields but `extra` have other values.
+
+        It equals that of `dataclasses.replace` and takes a fraction of the time: fields that stay were checked before.
+        """
+        require_known(values, [name for name in self.__dataclass_fields__ if name != "extra"], self.called())
+        copy = object.__new__(type(self))
+        kept = (name for name in self.__dataclass_fields__ if name in self.__dict__)  # nothing that was derived
+        copy.__dict__.update({name: self.__dict__[name] for name in kept}, **values)
+        copy._check(check for check in checks_of(type(self)) if check.name in values)
+        return copy
 
     def value(self, key: str) -> Any:
         """The value of a key, its own or one of a rule; None where nothing is said."""

@@ -49,12 +49,12 @@ def _bound(mission: Mission) -> float:
     points = [*(p for r in robots for p in (r.position, r.end_position)), *(p for t in tasks for p in _portals(t))]
     points += [station.position for station in mission.stations]
     points += [robot.camera.mount for robot in robots if robot.camera is not None]
-    points += [] if mission.lanes is None else mission.lanes.nodes.values()
     sizes = [(t.action.side_m, t.action.spacing_m, t.action.height_m, t.action.width_m) for t in tasks if t.action]
     points += [tuple(size for size in row if size is not None) for row in sizes]
     points += [corner for t in tasks if t.action is not None for corner in t.action.area or ()]
     points += [point for t in tasks if t.action is not None for point in t.action.places.values()]
     far = max(abs(c) for point in points if point is not None for c in point)
+    far = far if mission.lanes is None else max(far, mission.lanes.farthest_m)
     stretch = _STRETCH if any(t.action is not None and t.action.has_geometry for t in tasks) else 1.0
     if far > _LARGEST_COORDINATE / stretch:
         return math.inf

@@ -76,6 +76,8 @@ def beginning_apart(task: Task, others: Collection[str]) -> Task:
 def alternatives_of(tasks: Collection[Task]) -> list[tuple[str, ...]]:
     """The sets of tasks of which at most one is done, in the order given; most tasks are alone in theirs."""
     listed = list(tasks)
+    if not any(task.either_or for task in listed):
+        return [(task.id,) for task in listed]
     sets: dict[int, list[str]] = {}
     for task, first in zip(listed, tied_by("either_or", listed), strict=True):
         sets.setdefault(first, []).append(task.id)

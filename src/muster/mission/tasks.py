@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field, replace
+from dataclasses import field
 from typing import Any, Self
 
 from muster.mission.action_keys import ACTION_KEYS, WITH_AREA, coverage_faults
@@ -231,7 +231,7 @@ class Work(RuleKeys, bearer="task"):
 
     def only_for(self, robot: str) -> Self:
         """The same work, which this robot alone may do."""
-        return replace(self, only_robots=(robot,))
+        return self.changed(only_robots=(robot,))
 
     def lag(self, prerequisite: str) -> Lag:
         """How long after the end of a prerequisite work begins."""
@@ -242,7 +242,7 @@ class Work(RuleKeys, bearer="task"):
         kept = tuple(prerequisites)
         if kept == self.prerequisites:
             return self
-        return replace(self, prerequisites=kept, lags={name: lag for name, lag in self.lags.items() if name in kept})
+        return self.changed(prerequisites=kept, lags={name: lag for name, lag in self.lags.items() if name in kept})
 
     @classmethod
     def settled(cls, values: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -267,11 +267,16 @@ class Problem(TravelAndWork):
 
     def refusal(self, i: int, j: int) -> tuple[str, str] | None:
         """Why robot i may not do task j whatever its route (reason, detail); None if it may."""
-        for rule in self.rules:
+        for rule in self._refusing:
             detail = rule.refusal(self, i, j)
             if detail is not None:
                 return rule.word, detail
         return None
+
+    @cached_property
+    def _refusing(self) -> tuple[Rule, ...]:
+        """The rules that hold and refuse pairs of a robot and a task."""
+        return tuple(rule for rule in self.rules if type(rule).refusal is not Rule.refusal)
 
     @cached_property
     def rules(self) -> tuple[Rule, ...]:

@@ -91,6 +91,7 @@ class TeamGround:
         """
         if changed:
             self.paths.grown()
+            self._executor.forget_ways()
         closed = [name for name in self._executor.crew if self._is_closed(name)]
         self._turned += len(closed)
         self._executor.go_other_ways(closed)

@@ -23,6 +23,7 @@ from muster.execution.replanning.reallocation import (
 from muster.execution.replanning.remaining_problem import RemainingMission, remaining_problem
 from muster.execution.replanning.travel import Travel
 from muster.execution.replanning.worthwhile import worthwhile
+from muster.mission.system.garbage import collector_paused
 from muster.model.problem import Problem
 
 
@@ -48,6 +49,7 @@ class Insertion:
         routes = _filled(problem, without_units(problem, before, forced))
         return revision_of(rest, what, routes, forced)
 
+    @collector_paused()
     def merged(self, rest: RemainingMission, found: Mapping[str, Sequence[str]]) -> Revision | None:
         """Routes that a search found some time ago, made to fit what is now; None if they are not worth it.
 

@@ -20,9 +20,10 @@ from muster.mission.values.arrays import Floats
 from muster.motion.actions import duration_of
 from muster.state.task_ledger import Ledger
 
-PART_TASKS = 40
-"""Tasks in the routes of the robots that an order is tried with; at least two robots are. A fleet with fewer open tasks
-than four times as many is planned as a whole."""
+PART_TASKS, PART_ROBOTS, ORDER_ROBOTS = 40, 16, 4
+"""An order is tried with at least two robots, until their routes have so many tasks; in a fleet of at least twice so
+many robots with no more than so many, of which orders that come at once each have their share, and the last number at
+least. A fleet with fewer robots, and fewer open tasks than four times so many, is planned as a whole."""
 
 
 @dataclass
@@ -46,9 +47,11 @@ class NearRobots:
         robots share stations, or a task of a route in the part is tied to one outside.
         """
         present = self._present
-        if sum(len(state.route) for state in present) < 4 * PART_TASKS or not all(map(self._is_alone, orders)):
+        if not _is_large(present) or not all(map(self._is_alone, orders)):
             return None
-        robots = dict.fromkeys(name for order in orders for name in self._nearest(self.ledger.tasks[order], present))
+        most = len(present) if len(present) < 2 * PART_ROBOTS else max(ORDER_ROBOTS, PART_ROBOTS // len(orders))
+        tasks = [self.ledger.tasks[order] for order in orders]
+        robots = dict.fromkeys(name for task in tasks for name in self._nearest(task, present, most))
         return self._part(robots, orders)
 
     def around(self, routes: Mapping[str, Sequence[str]]) -> Part | None:
@@ -65,16 +68,17 @@ class NearRobots:
         """Robots with the tasks of their routes, and more; None: that is no small part, or is tied to what is not."""
         tasks = [*more, *dict.fromkeys(task for name in robots for task in self.crew[name].route)]
         named = {name for task in tasks for name in tasks_named_by(self.ledger.tasks[task])}
-        routed = sum(len(state.route) for state in self._present)
-        if not robots or 2 * len(tasks) > routed or routed < 4 * PART_TASKS or any(map(self.ledger.is_open, named)):
+        present = self._present
+        is_small = 2 * (len(robots) + len(tasks)) <= len(present) + _routed(present)
+        if not robots or not is_small or not _is_large(present) or any(map(self.ledger.is_open, named)):
             return None
         return Part(robots, tasks)
 
     def _is_alone(self, order: str) -> bool:
         return not self.ledger.is_joint(order) and not tasks_named_by(self.ledger.tasks[order])
 
-    def _nearest(self, task: Task, present: Sequence[RobotState]) -> list[str]:
-        """The robots that may do a task and whose routes grow least by it, as far as straight ways tell.
+    def _nearest(self, task: Task, present: Sequence[RobotState], most: int) -> list[str]:
+        """At most so many robots that may do a task and whose routes grow least by it, as far as straight ways tell.
 
         By turns one with the least detour, and one with the least delay: of the task, and of all that it puts off.
         """
@@ -100,7 +104,7 @@ class NearRobots:
         after = np.repeat(last, counts) - np.arange(len(places))
         work_s = duration_of(task) or 0.0
         late_s = ends_s + there_m / speed + after * (work_s + detour_m / speed)
-        return _first_of_each(states, [np.minimum.reduceat(cost, first) for cost in (detour_m / speed, late_s)])
+        return _first_of_each(states, [np.minimum.reduceat(cost, first) for cost in (detour_m / speed, late_s)], most)
 
     def _row(self, state: RobotState) -> tuple[Floats, Floats]:
         """Of a robot's route (1 + n, 3) where tasks not begun are left, and (1 + n,) about how long each takes.
@@ -113,6 +117,16 @@ class NearRobots:
         if known is None or known[0] != tasks:
             known = self._known[state.robot.id] = (tasks, *_route(tasks, state.robot))
         return known[1:]
+
+
+def _routed(states: Sequence[RobotState]) -> int:
+    """The number of tasks in the routes of robots."""
+    return sum(len(state.route) for state in states)
+
+
+def _is_large(present: Sequence[RobotState]) -> bool:
+    """Whether a fleet is too large to be planned as a whole for each order."""
+    return len(present) >= 2 * PART_ROBOTS or _routed(present) >= 4 * PART_TASKS
 
 
 def _free_at(states: Sequence[RobotState]) -> tuple[Floats, Floats]:
@@ -130,12 +144,12 @@ def _route(tasks: Sequence[Task], robot: Robot) -> tuple[Floats, Floats]:
     return np.array(places), np.array(lasts_s)
 
 
-def _first_of_each(states: Sequence[RobotState], ranks: Sequence[Floats]) -> list[str]:
-    """The first robots of each ranking, by turns, until their routes have enough tasks."""
+def _first_of_each(states: Sequence[RobotState], ranks: Sequence[Floats], most: int) -> list[str]:
+    """The first robots of each ranking, by turns, until their routes have enough tasks, or they are the most."""
     chosen: dict[str, int] = {}
     for row in np.stack([np.argsort(rank, kind="stable") for rank in ranks], axis=1).tolist():
         for k in row:
-            if len(chosen) >= 2 and sum(chosen.values()) >= PART_TASKS:
+            if len(chosen) >= most or (len(chosen) >= 2 and sum(chosen.values()) >= PART_TASKS):
                 return list(chosen)
             chosen[states[k].robot.id] = len(states[k].route)
     return list(chosen)

@@ -39,11 +39,18 @@ class Binding:
         return robot not in self.never and (self.only is None or robot in self.only)
 
 
+UNBOUND = Binding()
+"""The binding of a task that may have any robot."""
+
+
 def binding_of(task: str, ledger: Ledger, under_way: Collection[str], robots: Mapping[str, Robot]) -> Binding:
     """The robots that tasks which have begun leave to one that the same robots do, or others."""
+    by_the_same, by_others = ledger.model.by_the_same(task), ledger.model.by_others(task)
+    if not by_the_same and not by_others:
+        return UNBOUND
     same, others = (
         {name: ledger.members(name) for name in related if name in ledger.ends_s or name in under_way}
-        for related in (ledger.model.by_the_same(task), ledger.model.by_others(task))
+        for related in (by_the_same, by_others)
     )
     reason = tied_to(same, others)
     only = next(iter(same.values()), None)

@@ -15,15 +15,17 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from muster.allocation.fixed import admissible_alone
-from muster.execution.replanning.relations import BY_WHICH_TASKS_ARE_BOUND, Binding
+from muster.execution.replanning.relations import BY_WHICH_TASKS_ARE_BOUND, UNBOUND, Binding
 from muster.execution.replanning.travel import Spot, Travel
 from muster.execution.replanning.worthwhile import Heading
 from muster.mission.goods import Amount, as_amount, by_commodity
 from muster.mission.model import Mission, Robot, Station, Task
+from muster.mission.task_relations import tasks_named_by
 from muster.model.energy_under_way import Held, with_held
 from muster.model.measured_energy import EnergyLeft
 from muster.model.parts import Begun
 from muster.model.problem import Problem
+from muster.model.robot_limits import NO_LIMITS, RobotLimits
 from muster.model.rules.relation import tied_among
 from muster.model.under_way import UnderWay
 from muster.motion.port import Place
@@ -59,6 +61,8 @@ class RobotSnapshot:
         what it has done by then, work under way included.
     left_s
         when it left its start; None: it has not.
+    limits
+        what rules ask of it, whatever it does.
     heading
         the task that it is on the way to, or waits at; None: there is none.
     """
@@ -74,6 +78,7 @@ class RobotSnapshot:
     load: Mapping[str, float] = field(default_factory=dict)
     done: tuple[Task, ...] = ()
     left_s: float | None = None
+    limits: RobotLimits = NO_LIMITS
     heading: Heading | None = None
 
     @property
@@ -224,7 +229,7 @@ def _with_energy_to_end(problem: Problem, began: Sequence[Sequence[int]]) -> Pro
         if math.isinf(problem.levels[i]) or robot.end_position is None or not began[i]:
             continue
         if not admissible_alone(problem, i, began[i]):
-            robots[i] = replace(robot, end_position=None)
+            robots[i] = robot.changed(end_position=None)
     return replace(problem, robots=tuple(robots))
 
 
@@ -240,9 +245,8 @@ def _begun(rest: RemainingMission, problem: Problem) -> tuple[Begun, ...]:
 
 def _late(rest: RemainingMission, problem: Problem) -> dict[str, str]:
     """Robots whose routes would have to be over before they can be back, and why they can do no task more."""
-    model = UnderWay(rest.mission, (), rest.ignored)
     over_s = {robot.id: begun.over_s for robot, begun in zip(problem.robots, problem.begun, strict=True)}
-    found = {one.robot.id: model.limits(one.robot).too_late(over_s[one.robot.id], 0.0, one.left_s) for one in rest.crew}
+    found = {one.robot.id: one.limits.too_late(over_s[one.robot.id], 0.0, one.left_s) for one in rest.crew}
     return {robot: f"{late}, even without it" for robot, late in found.items() if late}
 
 
@@ -277,6 +281,7 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
     """The tasks that can be planned, as they are now; and why the others cannot."""
     hopeless: dict[str, str] = {}
     hopeful: dict[str, Task] = {}
+    tied = {task.id for task in rest.tasks if tasks_named_by(task)}
     for task in rest.tasks:
         robots, why = _robots_for(rest, task)
         if task.id in rest.expired:
@@ -286,9 +291,11 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
         elif robots is not None and not robots:
             hopeless[task.id] = why
         else:
-            hopeful[task.id] = _for_robots(task.waiting_for(_open_prerequisites(rest, task)), robots)
-    model = UnderWay(rest.mission, rest.tasks, rest.ignored)
-    units = [unit for unit in {model.unit(task.id) for task in rest.tasks} if len(unit) > 1]
+            named = task.waiting_for(_open_prerequisites(rest, task)) if task.id in tied else task
+            hopeful[task.id] = _for_robots(named, robots)
+    if not tied:
+        return list(hopeful.values()), hopeless
+    units = _units(rest)
     _drop_units_without_hope(units, hopeful, hopeless)
     _drop_transports_without_hope(rest, hopeful, hopeless)
     sure = {snapshot.task for snapshot in rest.crew if snapshot.task is not None}
@@ -306,8 +313,14 @@ def _tasks_with_hope(rest: RemainingMission, travel: Travel) -> tuple[list[Task]
     return [tied_among(task, hopeful) for task in hopeful.values()], hopeless
 
 
+def _units(rest: RemainingMission) -> list[tuple[str, ...]]:
+    """The sets of several tasks that begin together."""
+    model = UnderWay(rest.mission, rest.tasks, rest.ignored)
+    return [unit for unit in {model.unit(task.id) for task in rest.tasks} if len(unit) > 1]
+
+
 def _for_robots(task: Task, robots: tuple[str, ...] | None) -> Task:
-    return task if task.only_robots == robots else replace(task, only_robots=robots)
+    return task if task.only_robots == robots else task.changed(only_robots=robots)
 
 
 def _open_prerequisites(rest: RemainingMission, task: Task) -> tuple[str, ...]:
@@ -340,9 +353,9 @@ def _drop_transports_without_hope(rest: RemainingMission, hopeful: dict[str, Tas
 def _robots_for(rest: RemainingMission, task: Task) -> tuple[tuple[str, ...] | None, str]:
     """The only robots of the crew that may do a task, None: all; and why there is none, if so."""
     refused = rest.refusals.get(task.id, {})
-    binding = rest.bindings.get(task.id, Binding())
+    binding = rest.bindings.get(task.id, UNBOUND)
     lock = task.only_robots
-    if lock is None and not refused and binding == Binding():
+    if lock is None and not refused and binding == UNBOUND:
         return None, ""
     crew = [snapshot.robot.id for snapshot in rest.crew]
     meant = crew if lock is None else [name for name in lock if name in crew]
@@ -372,7 +385,7 @@ def _lasting(task: Task, duration_s: float) -> Task:
     """A task of another duration, which is that of its action where it has its own."""
     if task.action is not None and task.action.duration_s is not None:
         return replace(task, action=replace(task.action, duration_s=duration_s))
-    return replace(task, duration_s=duration_s)
+    return task.changed(duration_s=duration_s)
 
 
 def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
@@ -381,7 +394,7 @@ def _mission(rest: RemainingMission, tasks: Sequence[Task]) -> Mission:
     travel = "euclidean" if mission.driven_lanes is None else "lanes"
     rules = replace(mission.rules, travel=travel, capacity_reserve=0.0, return_to_start=False)
     scores = mission.suitability
-    return mission.at_once(
+    return mission.what_is_left(
         rules=rules,
         map=None,
         travel=None,
@@ -405,8 +418,7 @@ def _robot(rest: RemainingMission, snapshot: RobotSnapshot) -> Robot:
     if not snapshot.has_past:
         leaves = snapshot.free_s
     available_from_s = max(0.0, leaves if snapshot.has_past else max(leaves, robot.available_from_s))
-    return replace(
-        robot.busy(available_from_s, snapshot.free_s),
+    return robot.busy(available_from_s, snapshot.free_s).changed(
         position=snapshot.spot.point[: mission.dimensions],
         end_position=None if snapshot.home is None else snapshot.home[: mission.dimensions],
         return_to_start=False,
@@ -437,11 +449,11 @@ def _bearable(problem: Problem, past: Mapping[str, Task]) -> Problem:
             if robot.end_position is not None:
                 home = float(problem.legs(i, [j], [problem.end(i)])[0, 0])
             if math.isinf(home):
-                robot, home = replace(robot, end_position=None), 0.0
+                robot, home = robot.changed(end_position=None), 0.0
             least = (float(problem.work_usage(i)[j]) + home) * (1 + _ROUNDING) + _ROUNDING
             begun[i] = replace(begun[i], over_s=_back_s(problem, i, j) * (1 + _ROUNDING))
             if robot.work_capacity is not None and robot.work_capacity < least:
-                robot = replace(robot, work_capacity=least)
+                robot = robot.changed(work_capacity=least)
         robots.append(robot)
     return replace(problem, robots=tuple(robots), begun=tuple(begun))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import pairwise
 
 from muster.allocation.allocator import scheduled
@@ -36,7 +37,13 @@ def stops_of(problem: Problem, routes: Sequence[Sequence[int]]) -> list[tuple[Ro
         found = [route.stops for route in scheduled(problem, [list(route) for route in routes])]
         if any(found):
             return found
-    return [tuple(RouteStop(problem.tasks[j].id, 0.0, 0.0, 0.0) for j in route) for route in routes]
+    return [tuple(_untimed(problem.tasks[j].id) for j in route) for route in routes]
+
+
+@lru_cache(maxsize=4096)
+def _untimed(task: str) -> RouteStop:
+    """A stop at a task, of whose times nothing is said."""
+    return RouteStop(task, 0.0, 0.0, 0.0)
 
 
 def route_ahead(problem: Problem, i: int, stops: Sequence[RouteStop]) -> RouteAhead:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from muster.execution.replanning.relations import as_bound, binding_of
 from muster.execution.replanning.remaining_problem import RemainingMission, RobotSnapshot
@@ -146,6 +146,7 @@ def _snapshot(
         load=load,
         done=done,
         left_s=state.known.left_s,
+        limits=state.limits,
         heading=_heading(state),
     )
 
@@ -169,7 +170,7 @@ def _held(state: RobotState, now: float, stations: Stations) -> Held | None:
 
 
 def _with_capacity(robot: Robot, capacity: float | None) -> Robot:
-    return robot if robot.work_capacity == capacity else replace(robot, work_capacity=capacity)
+    return robot if robot.work_capacity == capacity else robot.changed(work_capacity=capacity)
 
 
 def _measured(state: RobotState) -> EnergyLeft | None:

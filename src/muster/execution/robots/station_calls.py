@@ -92,6 +92,8 @@ def next_call(route: Sequence[str], calls: Sequence[Call]) -> Call | None:
 
 def with_calls(route: Iterable[str], calls: Sequence[Call]) -> tuple[str, ...]:
     """The tasks of a route and the stations between them, in order."""
+    if not calls:
+        return tuple(route)
     names: list[str] = []
     for task in route:
         names += [call.station for call in calls if call.before == task]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from muster.execution.record import Tell
 from muster.execution.robots.robot_energy import RobotEnergy
@@ -50,6 +50,11 @@ class EnergyWatch:
     ask: Tell
     on_duty: Callable[[], bool] = lambda: False
     _learnt_from: int = 0
+    _usages: dict[str, tuple[Place, dict[Place, float | None]]] = field(default_factory=dict)  # from where robots are
+
+    def forget_ways(self) -> None:
+        """Forget what ways use: they are others from now on."""
+        self._usages.clear()
 
     def empty(self) -> Iterator[RobotState]:
         """Robots whose telemetry tells that they are empty."""
@@ -149,7 +154,19 @@ class EnergyWatch:
         return [one for one in self.stations.working if one.gives_energy and one.id not in state.limits.closed]
 
     def _usage(self, state: RobotState, goal: Place) -> float | None:
-        """What the way from where a robot is to a place uses; None where there is none."""
+        """What the way from where a robot is to a place uses; None where there is none.
+
+        A robot that stays where it is asks again and again.
+        """
+        at, known = self._usages.get(state.robot.id, (None, {}))
+        if at != state.position:
+            known = {}
+            self._usages[state.robot.id] = state.position, known
+        if goal not in known:
+            known[goal] = self._usage_of_way(state, goal)
+        return known[goal]
+
+    def _usage_of_way(self, state: RobotState, goal: Place) -> float | None:
         way = self.way(state, goal)
         if way is None:
             return None

@@ -149,6 +149,8 @@ def _different(limits: Limits, unit: list[int]) -> dict[int, Bools]:
 
 def tied_among(task: Task, there: Collection[str]) -> Task:
     """The task, with only those ties that are to tasks that are there."""
+    if not any(getattr(task, key) for key in RELATIONS):
+        return task
     left: dict[str, Any] = {key: tuple(name for name in getattr(task, key) if name in there) for key in RELATIONS}
     return task if all(left[key] == getattr(task, key) for key in RELATIONS) else replace(task, **left)
 

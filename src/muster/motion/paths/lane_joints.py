@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from muster.mission.lanes import Lane, Lanes
-from muster.mission.values.arrays import Floats, Indices
+from muster.mission.values.arrays import Bools, Floats, Indices
 
 SAME_M = 1e-6
 """Lanes are as near to a place as the nearest where they differ by no more; then the first of the mission is taken."""
@@ -25,6 +25,7 @@ ON_LANE_M = 1e-3
 _LANES, _STEPS = 100, 20
 """So many lanes are looked at where the way to the nearest point of all is not free, and so many metres each way of the
 nearest point of each."""
+_MOST_JOINTS = 10_000  # that are kept: robots under way are somewhere else each time
 _PARALLEL = 1e-6  # rad: lanes that differ by no more lie along each other
 
 Sees = Callable[[Floats], bool]
@@ -82,33 +83,45 @@ class Joints:
 
     Parameters
     ----------
+    places
+        (n, 2) metres: all nodes of the mission.
     numbers
-        (m,) of these lanes.
-    ends
-        (m, 2, 2) metres.
+        (m,) of these lanes, ascending.
     nodes
         (m, 2) the numbers of the nodes at which they begin and end.
+    both_ways
+        (m,) whether robots drive them backwards, too.
     sees
         as of `closed_lanes`.
     """
 
+    places: Floats
     numbers: Indices
-    ends: Floats
     nodes: Indices
+    both_ways: Bools
     sees: Sees | None
+    _known: dict[tuple[float, ...], Joint | None] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
     def of(cls, lanes: Lanes, numbers: Iterable[int], sees: Sees | None) -> Joints:
         number_of = {name: k for k, name in enumerate(lanes.nodes)}
-        some = np.array(list(numbers), dtype=np.int64)
+        some = np.array(sorted(numbers), dtype=np.int64)
         edges = [lanes.edges[k] for k in some.tolist()]
         nodes = np.array([(number_of[lane.start], number_of[lane.end]) for lane in edges], dtype=np.int64)
         places = np.array([place[:2] for place in lanes.nodes.values()], dtype=np.float64)
-        nodes = nodes.reshape(-1, 2)
-        return cls(some, places[nodes].reshape(-1, 2, 2), nodes, sees)
+        both_ways = np.array([lane.both_ways for lane in edges], dtype=np.bool_)
+        return cls(places.reshape(-1, 2), some, nodes.reshape(-1, 2), both_ways, sees)
 
     def joint(self, place: Floats) -> Joint | None:
         """Return where a place (2,) is joined: at the nearest point of a lane to which the straight way is free."""
+        name = tuple(place.tolist())
+        if name not in self._known:
+            if len(self._known) >= _MOST_JOINTS:
+                self._known.clear()
+            self._known[name] = self._found(place)
+        return self._known[name]
+
+    def _found(self, place: Floats) -> Joint | None:
         if not len(self.numbers) or (self.sees is not None and not self.sees(np.stack([place, place]))):
             return None
         starts, along, metres = self._lines
@@ -153,6 +166,20 @@ class Joints:
         return self.sees is None or self.sees(np.stack([place, starts[lane] + at_m * along[lane]]))
 
     @cached_property
+    def ends(self) -> Floats:
+        """The ends (m, 2, 2) of the lanes, metres."""
+        return self.places[self.nodes].reshape(-1, 2, 2)
+
+    @cached_property
+    def pieces(self) -> tuple[Indices, Indices]:
+        """The lanes as arcs (k, 2) from node to node, in both directions where they have these, and (k,) their rows."""
+        rows = np.repeat(np.arange(len(self.numbers)), np.where(self.both_ways, 2, 1))
+        arcs = self.nodes[rows]
+        back = np.flatnonzero(np.diff(rows, prepend=-1) == 0)
+        arcs[back] = arcs[back, ::-1]
+        return arcs, rows
+
+    @cached_property
     def _lines(self) -> tuple[Floats, Floats, Floats]:
         """Where the lanes begin and their directions, (m, 2), and their lengths (m,), metres."""
         along = self.ends[:, 1] - self.ends[:, 0]
@@ -179,9 +206,9 @@ class JoinedLanes(NamedTuple):
     places: Indices
 
 
-def joined(lanes: Lanes, joints: Joints, places: Floats) -> JoinedLanes:
+def joined(joints: Joints, places: Floats) -> JoinedLanes:
     """Return the lanes of some joints with places (k, 2), each another."""
-    points = [np.array(place[:2], dtype=np.float64) for place in lanes.nodes.values()]
+    nodes, points = len(joints.places), list[Floats]()
     inner: dict[int, list[tuple[float, int]]] = {}
     stubs: list[tuple[int, int]] = []
     numbers = np.full(len(places), -1, dtype=np.int64)
@@ -191,19 +218,19 @@ def joined(lanes: Lanes, joints: Joints, places: Floats) -> JoinedLanes:
             continue
         at = joint.node if joint.node >= 0 else _inner(inner, joint)
         if at < 0:
-            at = len(points)
+            at = nodes + len(points)
             points.append(joint.at)
             for lane, at_m in joint.on:
                 inner.setdefault(lane, []).append((at_m, at))
         numbers[k] = at
         if joint.away_m > ON_LANE_M:
-            numbers[k] = len(points)
+            numbers[k] = nodes + len(points)
             points.append(place)
-            stubs.append((len(points) - 1, at))
-    arcs, on = _arcs(lanes, joints, inner)
+            stubs.append((int(numbers[k]), at))
+    arcs, on = _arcs(joints, inner)
     both = [pair for a, b in stubs for pair in ((a, b), (b, a))]
     return JoinedLanes(
-        np.array(points, dtype=np.float64).reshape(-1, 2),
+        np.concatenate([joints.places, np.array(points, dtype=np.float64).reshape(-1, 2)]),
         np.concatenate([arcs, np.array(both, dtype=np.int64).reshape(-1, 2)]),
         np.append(on, np.full(len(both), -1)),
         numbers,
@@ -216,13 +243,17 @@ def _inner(inner: dict[int, list[tuple[float, int]]], joint: Joint) -> int:
     return next((point for other_m, point in inner.get(lane, ()) if abs(other_m - at_m) <= SAME_M), -1)
 
 
-def _arcs(lanes: Lanes, joints: Joints, inner: dict[int, list[tuple[float, int]]]) -> tuple[Indices, Indices]:
+def _arcs(joints: Joints, inner: dict[int, list[tuple[float, int]]]) -> tuple[Indices, Indices]:
     """The pieces of lanes between their nodes and inner points, in both directions where lanes have these."""
-    ways: list[tuple[int, int]] = []
-    on: list[int] = []
-    for number, (start, end) in zip(joints.numbers.tolist(), joints.nodes.tolist(), strict=True):
-        stops: Sequence[int] = [start, *(point for _, point in sorted(inner.get(number, ()))), end]
-        pieces = list(pairwise(stops)) + (list(pairwise(stops[::-1])) if lanes.edges[number].both_ways else [])
-        ways += pieces
-        on += [number] * len(pieces)
-    return np.array(ways, dtype=np.int64).reshape(-1, 2), np.array(on, dtype=np.int64)
+    whole, rows = joints.pieces
+    arcs, on, at = list[Indices](), list[Indices](), 0
+    for number in sorted(inner):
+        row = int(np.searchsorted(joints.numbers, number))
+        start, end = joints.nodes[row].tolist()
+        stops: Sequence[int] = [start, *(point for _, point in sorted(inner[number])), end]
+        pieces = list(pairwise(stops)) + (list(pairwise(stops[::-1])) if joints.both_ways[row] else [])
+        first, last = (int(np.searchsorted(rows, row, side)) for side in ("left", "right"))
+        arcs += [whole[at:first], np.array(pieces, dtype=np.int64)]
+        on += [joints.numbers[rows[at:first]], np.full(len(pieces), number)]
+        at = last
+    return np.concatenate([*arcs, whole[at:]]), np.concatenate([*on, joints.numbers[rows[at:]]])

@@ -61,7 +61,7 @@ class LanePaths:
             if not self.clear(ends):
                 return NoPath("start blocked", _shown(ends[0]))
             return Path(ends[:1]), []
-        on = self._open(joined(self.lanes, self._joints, ends))
+        on = self._open(joined(self._joints, ends))
         for place, number in zip(ends, on.places.tolist(), strict=True):
             if number < 0:
                 return NoPath(NO_LANE, f"no straight way leads from {_shown(place)} to a lane that it can drive")
@@ -70,7 +70,9 @@ class LanePaths:
             return NoPath("disconnected", f"no lanes lead from {_shown(ends[0])} to {_shown(ends[1])}")
         points = on.points[way]
         points[0], points[-1] = ends
-        speed = dict(zip(map(tuple, on.arcs.tolist()), self._speeds(on).tolist(), strict=True))
+        name = on.arcs @ (len(on.points), 1)
+        driven = np.isin(name, np.array(way[:-1]) * len(on.points) + way[1:])
+        speed = dict(zip(map(tuple, on.arcs[driven].tolist()), self._speeds(on)[driven].tolist(), strict=True))
         return Path(points), [speed[piece] for piece in pairwise(way)]
 
     def clear(self, points: Floats) -> bool:
@@ -85,7 +87,7 @@ class LanePaths:
         """
         leave, enter = exits[:, :2], entries[:, :2]
         places, number = np.unique(np.concatenate([leave, enter]), axis=0, return_inverse=True)
-        on = self._open(joined(self.lanes, self._joints, places))
+        on = self._open(joined(self._joints, places))
         number = number.reshape(-1)
         (rows, row), (columns, column) = (
             np.unique(some, return_inverse=True) for some in np.split(number, [len(leave)])
@@ -138,9 +140,7 @@ class LanePaths:
     def _ways(self, on: JoinedLanes) -> core.LaneWays:
         metres = np.linalg.norm(on.points[on.arcs[:, 1]] - on.points[on.arcs[:, 0]], axis=1)
         seconds = metres / np.minimum(self.times.speed_mps, self._speeds(on))
-        return core.LaneWays(
-            on.points, on.arcs.tolist(), seconds.tolist(), turn=self.times.turn_s, stop=self.times.stop_s
-        )
+        return core.LaneWays(on.points, on.arcs, seconds, turn=self.times.turn_s, stop=self.times.stop_s)
 
 
 def _shown(point: Floats) -> str:

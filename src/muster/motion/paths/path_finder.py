@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import pairwise
 from typing import Protocol
 
@@ -15,6 +16,7 @@ from muster.motion.free_space import GridSpace, PolygonSpace, PrismSpace, Space
 from muster.motion.grid import Grid, Indices
 from muster.motion.maps.free_points import free
 from muster.motion.path import NoPath, Path
+from muster.motion.paths.kept_lengths import KeptLengths
 from muster.motion.paths.on_grid import core_grid, without_repetitions
 from muster.motion.paths.planner import blocked, disconnected, pair, point_of, points_of
 from muster.motion.paths.rings import rings_of
@@ -108,6 +110,7 @@ class _Nowhere:
 class _InRegion:
     def __init__(self, space: PolygonSpace) -> None:
         self._ways = core.Ways.on_region(rings_of(space.region))
+        self._kept = KeptLengths(partial(_plane_lengths, self._ways))
 
     def sees(self, a: Floats, b: Floats) -> bool:
         return self._ways.sees(pair(a), pair(b))
@@ -116,7 +119,7 @@ class _InRegion:
         return _plane_way(self._ways, pair(start), pair(goal))
 
     def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats:
-        return _plane_lengths(self._ways, exits, entries, threads)
+        return self._kept.lengths(exits, entries, threads)
 
 
 class _OnGrid:
@@ -125,6 +128,7 @@ class _OnGrid:
     def __init__(self, grid: Grid) -> None:
         self._grid = grid
         self._ways = core.Ways.on_grid(core_grid(grid))
+        self._kept = KeptLengths(partial(_plane_lengths, self._ways))
 
     def sees(self, a: Floats, b: Floats) -> bool:
         return self._ways.sees(self._cell(a), self._cell(b))
@@ -136,7 +140,7 @@ class _OnGrid:
         return way
 
     def lengths(self, exits: Floats, entries: Floats, threads: int) -> Floats:
-        in_cells = _plane_lengths(self._ways, self._grid.to_grid(exits), self._grid.to_grid(entries), threads)
+        in_cells = self._kept.lengths(self._grid.to_grid(exits), self._grid.to_grid(entries), threads)
         return in_cells * self._grid.resolution_m
 
     def _cell(self, point: Floats) -> tuple[float, float]:
