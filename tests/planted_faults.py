@@ -5,6 +5,7 @@ exit code is 1 where a fault is not caught.
 """
 
 import argparse
+import re
 import subprocess
 import sys
 import time
@@ -66,7 +67,7 @@ def caught(fault):
     try:
         path.write_text(text.replace(fault.was, fault.becomes), encoding="utf-8")
         done = subprocess.run(
-            ["make", "quick", "BASE=HEAD"],
+            ["make", "quick", "BASE=HEAD", "PYTEST_FLAGS=-x"],
             cwd=ROOT,
             check=False,
             stdout=subprocess.PIPE,
@@ -75,7 +76,8 @@ def caught(fault):
         )
     finally:
         path.write_text(text, encoding="utf-8")
-    return done.returncode != 0 and " failed" in done.stdout, time.monotonic() - begin, done.stdout.splitlines()[-1]
+    summary = next((line for line in reversed(done.stdout.splitlines()) if re.search(r"\d (failed|error)", line)), "")
+    return bool(done.returncode and summary), time.monotonic() - begin, summary
 
 
 def main():
