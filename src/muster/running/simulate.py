@@ -63,6 +63,7 @@ simulate = keywords_of_run.in_world(simulated)
 
 def _require_possible(mission: Mission, plan: Plan | Coordination, request: ObservedRun) -> None:
     """Refuse, before any file is opened, what is no plan and no coordination, and what neither can carry out."""
+    request.require_place_of_map()
     if isinstance(plan, Plan):
         plan.require_whole(accept_partial=request.accept_partial)
     elif isinstance(plan, Coordination):
