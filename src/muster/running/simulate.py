@@ -67,8 +67,10 @@ def _require_possible(mission: Mission, plan: Plan | Coordination, request: Obse
     if isinstance(plan, Plan):
         plan.require_whole(accept_partial=request.accept_partial)
     elif isinstance(plan, Coordination):
-        if request.unknown:
-            raise ParameterError("unknown: true; expected a plan: without a centre robots share no map")
+        if request.explore:
+            raise ParameterError(
+                "explore: true; expected a plan, or no explore: without a centre nobody makes frontiers"
+            )
         plan.refuse_mission(mission)
     else:
         raise ParameterError(f"plan: {shown(plan)}; expected a Plan or a Negotiation")

@@ -25,7 +25,16 @@ from muster_team.knowledge.messages import Stage
 from muster_team.negotiators.methods import method_named
 from muster_team.processes.process_reports import SHOW, TeamSetup
 from muster_team.processes.team import Team
-from muster_team.runs.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
+from muster_team.runs.pipe_messages import (
+    BodyState,
+    LidarScan,
+    MapPieces,
+    OperatorEvent,
+    RadioState,
+    SteerCommand,
+    WorkReport,
+)
+from muster_team.runs.scanned_ground import ScannedGround
 from muster_team.runs.team_log import TeamLog
 from muster_team.runs.team_watch import TeamWatch
 
@@ -49,9 +58,15 @@ class RobotBodies:
     camera_search: CameraSearch | None = None
 
     def __init__(
-        self, mission: Mission, world: SimulatedWorld, robots: RobotsInWorld, setup: TeamSetup, log: TeamLog
+        self,
+        mission: Mission,
+        world: SimulatedWorld,
+        robots: RobotsInWorld,
+        setup: TeamSetup,
+        log: TeamLog,
+        ground: ScannedGround | None = None,
     ) -> None:
-        self._world, self._setup, self._log = world, setup, log
+        self._mission, self._world, self._setup, self._log, self.ground = mission, world, setup, log, ground
         self.true_places = TruePlaces(mission, world, robots, self._tag_of)
         self._telemetry_source = robots
         self._method = method_named(setup.method)
@@ -72,6 +87,8 @@ class RobotBodies:
         """Process what a robot sends to its body, or reports of itself."""
         if isinstance(report, SteerCommand):
             self._orders[robot] = self._world.ports[robot].send(report.waypoints)
+        elif isinstance(report, MapPieces) and self.ground is not None:
+            self.ground.take(robot, report.life, report.pieces)
         elif isinstance(report, WorkReport):
             self._work_reports[robot], self._log.used[robot] = report, report.used
             self.watch.refused_by_team(robot, report.refused_by_team)
@@ -133,12 +150,26 @@ class RobotBodies:
             body = BodyState(self.time_s, said, self._orders.get(robot, 0), self._log.used[robot])
             self.team.send(robot, body, latest=True)
             self._log.see(robot, said, self.time_s)
+        self._scan()
         self.team.poll(0.0)  # even if the step took all the time: unread reports fill the pipes
         while (left_s := until_s - time.monotonic()) > 0:
             self.team.poll(left_s)
         statuses = {robot: progress.status for robot, progress in self.team.progress.items()}
         self.watch.look(self.time_s, self.team.living, self.team.ended, statuses)
         self._take_agreement()
+
+    def _scan(self) -> None:
+        """Send robots without a map what their lidars see."""
+        if self.ground is None:
+            return
+        for robot, scan in self.ground.scans(self.team.living, self._connected).items():
+            self.team.send(robot, LidarScan(scan), latest=True)
+        self.ground.follow()
+
+    @property
+    def ways_closed(self) -> int:
+        """How often robots have gone other ways, as theirs were closed by what their team saw."""
+        return sum(report.ways_closed for report in self._work_reports.values())
 
     def _check_cameras(self) -> None:
         """Evaluate the cameras. Tasks from their findings go to one robot, which sends them to the others."""
@@ -261,7 +292,7 @@ class RobotBodies:
     @cached_property
     def _travel(self) -> Travel:
         """What knows walls and closed areas."""
-        return travel_of(self._setup.problem.mission)
+        return travel_of(self._mission)
 
     def _fail(self, robot: str) -> None:
         """A robot breaks down, with its process."""
@@ -279,6 +310,8 @@ class RobotBodies:
             self._work_reports.pop(robot, None)
             self._events_sent.pop(robot, None)
             self.team.start(robot)
+            if self.ground is not None:
+                self.ground.forget(robot)
         elif robot in self._cut_off:
             self._set_radio(robot, on=True)
         else:

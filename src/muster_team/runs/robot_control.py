@@ -29,12 +29,16 @@ from muster_team.knowledge.messages import ORDERS, Fact
 from muster_team.knowledge.new_tasks import content_of, task_of
 from muster_team.knowledge.orders import Orders
 from muster_team.negotiators.negotiator import Negotiator
+from muster_team.runs.robot_ground import RobotGround
 
 NOTICE_HEARTBEATS = 3.0
 """The time before a joint begin in which all have to learn of it, in heartbeats."""
 
 LATENESS = 0.1
 """The share of the time until a task begins by which it may be late; what it must follow soon is held back for that."""
+
+OFFER_REST_S = 5.0
+"""Real seconds between two epochs that a robot opens as its way has turned out to be longer: robots have to agree."""
 
 _MISSED = frozenset(event.kind for event in MISSED.values())
 _ITS_OWN = {
@@ -51,6 +55,7 @@ _ITS_OWN = {
     "robot_stands_aside",
     "robot_goes_round",
     "robot_makes_room",
+    "way_closed",
     "waits_in_traffic",
     "goes_on",
     "traffic_jam",
@@ -84,6 +89,8 @@ class RobotControl:
         the usage so far, in the mission's unit.
     speed
         by how much the mission's time goes faster than that of messages.
+    ground
+        the map that the robot builds with the others; None: it has one.
     """
 
     def __init__(
@@ -94,9 +101,11 @@ class RobotControl:
         now: float,
         used: float,
         speed: float = 1.0,
+        ground: RobotGround | None = None,
     ) -> None:
         mission = problem.mission.at_once()
         robot_paths = problem.robot_paths if mission.has_paths else None
+        robot_paths = robot_paths if ground is None else ground.paths
         self._travel = travel_of(mission, robot_paths)
         self._negotiator = negotiator
         self._executor = Executor(
@@ -109,6 +118,9 @@ class RobotControl:
             now=now,
             peers=self,
         )
+        self._ground = ground
+        if ground is not None:
+            ground.begin(self._executor)
         self._limited = problem.holds("capacity")
         self._hand = self._executor.crew[port.robot]
         self._hand.recall(used)
@@ -120,6 +132,9 @@ class RobotControl:
         self._known = 0  # the digest of what was learned
         self._first = 0  # the number of the first event of this tick
         self._left_with: dict[str, tuple[float, float]] = {}  # the usage for tasks broken off, the last time
+        self._offer_again_s, self._offer_rest_s = now, OFFER_REST_S * speed
+        if ground is not None:
+            negotiator.offer()  # what was agreed first counts on what nobody has seen yet
         self._notice_s = NOTICE_HEARTBEATS * negotiator.timeouts.heartbeat_s * speed
 
     @property
@@ -138,6 +153,9 @@ class RobotControl:
         self._break_off()
         self._learn()
         self._give_back_dropped()
+        if self._ground is not None:
+            self._executor.set_clock(now)
+            self._ground.look(now)
         wanted = self._wanted
         if not self._hand.out and (wanted != self._hand.route or any(map(self._too_late_for, wanted))):
             self._executor.plan_again(OtherEvent(kind="agreed"))
@@ -147,6 +165,11 @@ class RobotControl:
                 self._negotiator.finish(event.data["task"])
             elif _is_back(event):
                 self._negotiator.come_back()
+            elif event.kind == "way_closed":
+                self._negotiator.offer(keeps=next(iter(self._hand.route), ""))
+        if self._negotiator.offers and self._negotiator.settled and now >= self._offer_again_s:
+            self._offer_again_s = now + self._offer_rest_s
+            self._negotiator.open_offer()
         self._negotiator.joint.leave_all_but(self._at)
         news = [event for event in self._news if event.kind in _ITS_OWN or _is_back(event)]
         return [event for event in news if event.kind not in _MISSED or event.data["task"] in routed]

@@ -18,7 +18,7 @@ from muster.model.problem import Problem
 from muster.motion.port import Telemetry
 from muster.state import ExecutionEvent, MissionState, OtherEvent, event_of
 from muster.state.event import KINDS
-from muster.state.robot_events import RobotReturns, RobotSilent, RobotStuck, TrafficJam
+from muster.state.robot_events import RobotReturns, RobotSilent, RobotStuck, TrafficJam, WayClosed
 from muster.state.run_events import MissionEnded, PlanAdopted, Replanned
 from muster.state.task_events import (
     CancelTask,
@@ -37,7 +37,7 @@ from muster.verification import verify
 
 _SAME_JAM_S = 30.0
 """Seconds within which two robots tell of one jam."""
-_CAUSES = (RobotStuck, RobotReturns, TaskRefused, WorkBrokenOff, TaskMissed)
+_CAUSES = (RobotStuck, RobotReturns, TaskRefused, WorkBrokenOff, TaskMissed, WayClosed)
 """What robots tell that makes them agree anew."""
 _NEW_AGREEMENT = {"kind": "new_agreement"}
 """Robots agreed anew, and told of nothing that has happened: they lost each other, or met again."""
