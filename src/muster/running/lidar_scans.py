@@ -5,13 +5,15 @@ Where other robots say that they are there is no obstacle, nor on the border of 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.mission.model import Robot
+from muster.mission.errors import ParameterError
+from muster.mission.model import Mission, Robot
 from muster.motion.grid import Bools, Floats
 from muster.motion.map_world import Body, World, body_of
 from muster.perception.laser import LIDAR
@@ -28,6 +30,28 @@ LOOK_S = 0.5
 """Seconds between two scans of a robot that moves."""
 _ON_BORDER_M = 0.02
 """From the border of a zone in which a beam ends there."""
+
+
+def require_wide_enough(mission: Mission, *, flies_by_voxels: bool) -> None:
+    """Raise `ParameterError` if a robot is so narrow that it fits between two beams that meet one wall.
+
+    Along a wall at a distance r two beams that are b apart meet it s ahead of the robot s² b / r from each other. That
+    is no passage for a robot of radius r, as far as it drives before it scans again, from r = s √(b / 2) on.
+
+    Parameters
+    ----------
+    mission : Mission
+        The mission with its robots.
+    flies_by_voxels : bool
+        Whether robots in the air go by voxels, which are wide enough.
+    """
+    for robot in mission.all_robots:
+        least_m = robot.speed_mps * LOOK_S * math.sqrt(LIDAR.step_rad / 2)
+        if robot.radius_m < least_m and not (flies_by_voxels and robot.kind == "air"):
+            raise ParameterError(
+                f"unknown: robot {robot.id} has radius_m {robot.radius_m:g}; expected at least {least_m:.3f} m at "
+                f"{robot.speed_mps:g} m/s: between the beams of its lidar a narrower robot drives into walls"
+            )
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ from muster.perception.team_map import TeamMap
 from muster.perception.voxel_map import SpaceScan
 from muster.running.driven_ways import DrivenWays
 from muster.running.exploration import Exploration, looks_m
-from muster.running.lidar_scans import LOOK_S, LidarScans, is_heard
+from muster.running.lidar_scans import LOOK_S, LidarScans, is_heard, require_wide_enough
 from muster.running.team_ground import TeamGround
 from muster.simulation import SimulatedWorld
 
@@ -65,13 +65,14 @@ class UnknownGround(TeamGround):
     Raises
     ------
     ParameterError
-        If the mission has no map by which robots travel.
+        If the mission has no map by which robots travel, or a robot is too narrow for its lidar.
     """
 
     def __init__(self, mission: Mission, *, explore: bool) -> None:
         require_travel_by_map(mission)
         truth = checked_world(mission)
         team_map = TeamMap(truth, mission)
+        require_wide_enough(mission, flies_by_voxels=team_map.air is not None)
         super().__init__(mission, truth, team_map, Exploration(mission, team_map) if explore or mission.tags else None)
         self._lidars: dict[str, _Lidar] = {}
         self._ways = DrivenWays(truth)
@@ -109,7 +110,8 @@ class UnknownGround(TeamGround):
             return
         self.due_s = now + LOOK_S
         self._executor.set_clock(now)
-        said = {name: port.telemetry() for name, port in self._ports.items()}
+        crew = self._executor.crew  # a robot that joins is in the world before it is one of it
+        said = {name: port.telemetry() for name, port in self._ports.items() if name in crew}
         self.follow_map(now, changed=self._scan(now, said))
         self._follow_ways()
         self.show(now)
@@ -128,6 +130,8 @@ class UnknownGround(TeamGround):
         """Let robots scan; return whether the map of obstacles has changed."""
         self.map.begin_look()
         for number, name in enumerate(self._world.ports):
+            if name not in self._executor.crew:
+                continue
             lidar = self._lidars.setdefault(name, _Lidar())
             place = self._world.positions[number].copy()
             still = math.dist(place, lidar.at) < self.map.cell_m

@@ -20,7 +20,7 @@ from muster.perception.map_pieces import PooledMap
 from muster.perception.occupancy_map import Scan
 from muster.perception.team_map import TeamMap
 from muster.running.driven_ways import DrivenWays
-from muster.running.lidar_scans import LOOK_S, LidarScans
+from muster.running.lidar_scans import LOOK_S, LidarScans, require_wide_enough
 from muster.running.state_estimation import RobotsInWorld
 from muster.running.team_ground import SHOW_S, TeamGround
 from muster.simulation import SimulatedWorld
@@ -44,7 +44,8 @@ class ScannedGround(TeamGround):
     Raises
     ------
     ParameterError
-        If the mission has no map by which robots travel, or robots in the air of a mission in space.
+        If the mission has no map by which robots travel, robots in the air of a mission in space, or a robot that is
+        too narrow for its lidar.
     """
 
     def __init__(self, mission: Mission) -> None:
@@ -56,6 +57,7 @@ class ScannedGround(TeamGround):
             raise ParameterError(
                 f"unknown: robot {name} is in the air; expected robots on the ground where robots negotiate, or a plan"
             )
+        require_wide_enough(mission, flies_by_voxels=False)
         super().__init__(mission, truth, team_map, None)
         self._pool = PooledMap(team_map)
         self._by_id = {robot.id: robot for robot in mission.all_robots}
