@@ -170,9 +170,22 @@ class RobotControl:
         if self._negotiator.offers and self._negotiator.settled and now >= self._offer_again_s:
             self._offer_again_s = now + self._offer_rest_s
             self._negotiator.open_offer()
+        self._tell_unreachable()
         self._negotiator.joint.leave_all_but(self._at)
         news = [event for event in self._news if event.kind in _ITS_OWN or _is_back(event)]
         return [event for event in news if event.kind not in _MISSED or event.data["task"] in routed]
+
+    def _tell_unreachable(self) -> None:
+        """Tell, once all is done that the robot owns, which tasks of nobody its map proves to be out of its reach."""
+        ledger, hand = self._executor.ledger, self._hand
+        if self._ground is None or not (self._negotiator.settled and self.idle) or hand.out:
+            return
+        for task in ledger.open:
+            known = hand.robot.id in ledger.refusals.get(task.id, {}) or not task.is_open_to(hand.robot.id)
+            if known or self._negotiator.owners([task.id]):
+                continue
+            if not self._ground.reaches(hand.position, task):
+                self._refuse(task.id, "unreachable: there is no way")
 
     def take_event(self, event: Event) -> str | None:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""

@@ -8,6 +8,7 @@ the same prices.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from muster.mission.errors import ParameterError
+from muster.mission.model import Task
 from muster.model.problem import Problem
 from muster.motion.map_world import body_of
 from muster.perception.explored_paths import ExploredPaths
@@ -100,6 +102,11 @@ class RobotGround(TeamGround):
         self.map.begin_look()
         self._pool.settle()
         self.follow_map(now, changed=self.map.end_look())
+
+    def reaches(self, place: Sequence[float], task: Task) -> bool:
+        """Return whether the robot's map leaves a way from a place to a task."""
+        size = self._world_of_mission.dimensions
+        return math.isfinite(self.paths.leg_m(self._body, tuple(place[:size]), tuple(task.position[:size])))
 
     def priced(self, problem: Problem, seen: tuple[Reach, ...]) -> Problem:
         """Return a problem with the ways of the map that the first pieces of each robot make, as many as `seen` has."""

@@ -140,7 +140,9 @@ class TeamLog:
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why."""
         ledger = self.state.ledger
-        reasons = {item.task: self._why(item) for item in self._plans[-1].unassigned} if self._plans else {}
+        left_out = {task: Unassigned(task, ()) for task in ledger.refusals}  # also by robots that agree no more
+        left_out |= {item.task: item for item in self._plans[-1].unassigned} if self._plans else {}
+        reasons = {task: self._why(item) for task, item in left_out.items()}
         return ledger.lost(lambda task: ledger.expired.get(task) or reasons.get(task) or "not done", self.state.gone)
 
     def _why(self, item: Unassigned) -> str:

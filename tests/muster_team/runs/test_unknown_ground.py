@@ -84,6 +84,17 @@ def test_a_task_that_no_robot_can_reach_is_given_back_by_all_with_the_reason():
     assert team.least > 0.98
 
 
+def test_a_task_that_nobody_ever_owns_is_told_to_be_out_of_reach_by_all():
+    """The wall that closes the room off is seen before anything is agreed by the map."""
+    team = MappingTeam(room((4.0, 0.0, 0.3, 8.0), tasks=[(2.0, 4.0), (6.0, 4.0), (9.0, 4.0)], robots=2))
+    assert team.run(60.0, lambda: is_over(team))
+    team.run(team.world.time_s + 1.0)
+    assert set(team.done()) == {"t_0"}
+    told = [(robot, data["task"], data["reason"]) for _, robot, kind, data in team.told if kind == "task_refused"]
+    assert {(robot, task) for robot, task, _ in told} == {(r, t) for r in ("r_0", "r_1") for t in ("t_1", "t_2")}
+    assert all(reason.startswith("unreachable") for *_, reason in told)
+
+
 @pytest.mark.parametrize("seed", [1, *(pytest.param(k, marks=pytest.mark.long) for k in range(2, 12))])
 def test_maps_that_are_lost_late_and_garbled_end_nobody(seed):
     team, random = MappingTeam(room(*ZIGZAG, tasks=TASKS, robots=3), seed=seed, loss=0.3, delay_s=0.3), Random(seed)
@@ -142,9 +153,10 @@ def test_a_robot_that_starts_again_gets_its_map_from_the_others():
 
 def test_as_processes_with_a_report_by_the_true_map_and_a_map_that_is_saved(tmp_path):
     mission = room((4.0, 1.0, 0.3, 7.0), tasks=[(6.0, 6.0), (2.0, 4.0)], robots=2)
+    mission = replace(mission, tasks=tuple(replace(task, duration_s=4.0) for task in mission.tasks))
     told, file = [], tmp_path / "built.yaml"
     report = muster.simulate(mission, muster.Negotiation(), unknown=True, speed=4, save_map=file, on_event=told.append)
-    assert set(report.tasks_done) == {"t_0", "t_1"}
+    assert set(report.tasks_done) == {"t_0", "t_1"}, report.tasks_lost
     assert report.contacts == 0
     assert report.ground.explored_m2 > 30
     assert report.ground.with_map_m <= report.ground.driven_m < 2 * report.ground.with_map_m
