@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections import deque
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
@@ -47,6 +48,9 @@ _ANSWER_S = 0.5
 _MOST_STEP_S = 0.5
 """The longest step in the mission's time, seconds: robots receive no sensor data within a step."""
 
+_KEPT = 1200
+"""Places of each robot that are kept, one a step, for what it tells late: those of a minute of real time."""
+
 MOST_SPEED = _MOST_STEP_S / _STEP_S
 """The largest speed-up over real time."""
 
@@ -67,7 +71,10 @@ class RobotBodies:
         ground: ScannedGround | None = None,
     ) -> None:
         self._mission, self._world, self._setup, self._log, self.ground = mission, world, setup, log, ground
-        self.true_places = TruePlaces(mission, world, robots, self._tag_of)
+        self.true_places = TruePlaces(mission, world, robots, self._tag_of, self._place_at)
+        self._places: dict[
+            str, deque[tuple[float, tuple[float, float]]]
+        ] = {}  # of each robot when it was sent its state
         self._telemetry_source = robots
         self._method = method_named(setup.method)
         self._future_events = sorted(mission.events, key=lambda event: event.at_s)
@@ -94,11 +101,15 @@ class RobotBodies:
             self.watch.refused_by_team(robot, report.refused_by_team)
             for reason in report.refused_at_once:
                 self.watch.refused_at_once(robot, reason)
-            told = len(self._log.events)
             for at_s, kind, data in report.events:
+                told = len(self._log.events)
                 self._log.take(robot, at_s, kind, data, report.used)
-            for off in self.true_places.follow(self._log.events[told:], self._log.state.ledger.tasks):
-                self._log.tell(off)
+                for off in self.true_places.follow(self._log.events[told:], self._log.state.ledger.tasks, at_s):
+                    self._log.tell(off)
+
+    def _place_at(self, robot: str, time_s: float) -> tuple[float, float] | None:
+        """Where a robot was when it was last sent its state, up to a time: what it tells, it did there."""
+        return next((place for at_s, place in reversed(self._places.get(robot, ())) if at_s <= time_s + 1e-9), None)
 
     @property
     def ports(self) -> Mapping[str, RobotPort]:
@@ -149,6 +160,8 @@ class RobotBodies:
             assert said is not None
             body = BodyState(self.time_s, said, self._orders.get(robot, 0), self._log.used[robot])
             self.team.send(robot, body, latest=True)
+            x, y, _ = self._world.ports[robot].true_position
+            self._places.setdefault(robot, deque(maxlen=_KEPT)).append((self.time_s, (x, y)))
             self._log.see(robot, said, self.time_s)
         self._scan()
         self.team.poll(0.0)  # even if the step took all the time: unread reports fill the pipes
