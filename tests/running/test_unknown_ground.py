@@ -243,6 +243,16 @@ def test_a_robot_that_joins_maps_too():
     assert least > 0.98
 
 
+def test_a_robot_that_is_too_narrow_does_not_join():
+    mission = room((4.0, 1.0, 0.3, 7.0), tasks=[(6.0, 4.0)])
+    run = Simulation(mission, solve(mission, "greedy"), unknown=True)
+    with pytest.raises(ParameterError, match=r"unknown: robot new has radius_m 0; expected at least 0\.047 m at 1 m/s"):
+        run.report(Event(at_s=0.0, robot_joins=Robot(id="new", position=(9.0, 4.0))))
+    while not run.done:
+        run.advance(run.time_s + 1.0)
+    assert run.result().tasks_done == ("t_0",)
+
+
 @pytest.mark.parametrize("slower", [1.0, 0.1])
 def test_a_robot_that_fits_between_the_beams_of_its_lidar_is_refused(slower):
     """Just wide enough it goes round a wall along which it drives; narrower it would drive into it."""

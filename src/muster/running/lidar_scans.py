@@ -6,14 +6,14 @@ Where other robots say that they are there is no obstacle, nor on the border of 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from muster.mission.errors import ParameterError
-from muster.mission.model import Mission, Robot
+from muster.mission.model import Robot
 from muster.motion.grid import Bools, Floats
 from muster.motion.map_world import Body, World, body_of
 from muster.perception.laser import LIDAR
@@ -32,7 +32,7 @@ _ON_BORDER_M = 0.02
 """From the border of a zone in which a beam ends there."""
 
 
-def require_wide_enough(mission: Mission, *, flies_by_voxels: bool) -> None:
+def require_wide_enough(robots: Iterable[Robot], *, flies_by_voxels: bool) -> None:
     """Raise `ParameterError` if a robot is so narrow that it fits between two beams that meet one wall.
 
     Along a wall at a distance r two beams that are b apart meet it s ahead of the robot s² b / r from each other. That
@@ -40,12 +40,12 @@ def require_wide_enough(mission: Mission, *, flies_by_voxels: bool) -> None:
 
     Parameters
     ----------
-    mission : Mission
-        The mission with its robots.
+    robots : iterable of Robot
+        The robots.
     flies_by_voxels : bool
         Whether robots in the air go by voxels, which are wide enough.
     """
-    for robot in mission.all_robots:
+    for robot in robots:
         least_m = robot.speed_mps * LOOK_S * math.sqrt(LIDAR.step_rad / 2)
         if robot.radius_m < least_m and not (flies_by_voxels and robot.kind == "air"):
             raise ParameterError(

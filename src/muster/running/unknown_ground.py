@@ -72,13 +72,17 @@ class UnknownGround(TeamGround):
         require_travel_by_map(mission)
         truth = checked_world(mission)
         team_map = TeamMap(truth, mission)
-        require_wide_enough(mission, flies_by_voxels=team_map.air is not None)
+        require_wide_enough(mission.all_robots, flies_by_voxels=team_map.air is not None)
         super().__init__(mission, truth, team_map, Exploration(mission, team_map) if explore or mission.tags else None)
         self._lidars: dict[str, _Lidar] = {}
         self._ways = DrivenWays(truth)
         self._told = 0
         self._kept_s, self._kept = -math.inf, dict[str, Any]()
         self.due_s = -math.inf
+
+    def require_able(self, robot: Robot) -> None:
+        """Raise `ParameterError` if a robot that joins is too narrow for its lidar."""
+        require_wide_enough([robot], flies_by_voxels=self.map.air is not None)
 
     def snapshot(self) -> Mapping[str, Any]:
         """Return the map as plain data for `begin`; it is some seconds old at most."""

@@ -21,7 +21,7 @@ from muster.model.problem import Problem
 from muster.model.schedule import held_back_for
 from muster.motion.port import RobotPort
 from muster.state import OtherEvent
-from muster.state.task_events import MISSED, Ends, TaskRefused
+from muster.state.task_events import Ends, TaskRefused
 from muster.state.task_ledger import moved
 from muster_team.auctions.capabilities import refuse_once_together
 from muster_team.knowledge.facts import deeds, in_order
@@ -29,6 +29,7 @@ from muster_team.knowledge.messages import ORDERS, Fact
 from muster_team.knowledge.new_tasks import content_of, task_of
 from muster_team.knowledge.orders import Orders
 from muster_team.negotiators.negotiator import Negotiator
+from muster_team.runs.own_events import ITS_OWN, MISSES, REFUSALS, is_back
 from muster_team.runs.robot_ground import RobotGround
 
 NOTICE_HEARTBEATS = 3.0
@@ -39,35 +40,6 @@ LATENESS = 0.1
 
 OFFER_REST_S = 5.0
 """Real seconds between two epochs that a robot opens as its way has turned out to be longer: robots have to agree."""
-
-_MISSED = frozenset(event.kind for event in MISSED.values())
-_ITS_OWN = {
-    "sets_out",
-    "arrives",
-    "starts",
-    "ends",
-    "returns",
-    "robot_at_end",
-    "no_way_to_end",
-    "robot_sent_again",
-    "robot_runs_low",
-    "robot_stuck",
-    "robot_stands_aside",
-    "robot_goes_round",
-    "robot_makes_room",
-    "way_closed",
-    "waits_in_traffic",
-    "goes_on",
-    "traffic_jam",
-    "task_refused",
-    "waits",
-    "work_broken_off",
-    *_MISSED,
-}
-"""Events that nobody else knows of."""
-
-_REFUSALS = {"task_refused", *_MISSED}
-"""Of these, those that say why a robot does not do a task."""
 
 
 class RobotControl:
@@ -163,7 +135,7 @@ class RobotControl:
         for event in self._executor.tick(now):
             if event.kind == "ends":
                 self._negotiator.finish(event.data["task"])
-            elif _is_back(event):
+            elif is_back(event):
                 self._negotiator.come_back()
             elif event.kind == "way_closed":
                 self._negotiator.offer(keeps=next(iter(self._hand.route), ""))
@@ -172,8 +144,8 @@ class RobotControl:
             self._negotiator.open_offer()
         self._tell_unreachable()
         self._negotiator.joint.leave_all_but(self._at)
-        news = [event for event in self._news if event.kind in _ITS_OWN or _is_back(event)]
-        return [event for event in news if event.kind not in _MISSED or event.data["task"] in routed]
+        news = [event for event in self._news if event.kind in ITS_OWN or is_back(event)]
+        return [event for event in news if event.kind not in MISSES or event.data["task"] in routed]
 
     def _tell_unreachable(self) -> None:
         """Tell, once all is done that the robot owns, which tasks of nobody its map proves to be out of its reach."""
@@ -390,7 +362,7 @@ class RobotControl:
     def _refuse(self, task: str, reason: str) -> None:
         """Tell why the robot gives a task back or up, unless the executor has just told it."""
         robot = self._negotiator.robot
-        told = (event.data["task"] for event in self._news if event.kind in _REFUSALS)
+        told = (event.data["task"] for event in self._news if event.kind in REFUSALS)
         if task not in told:
             self._executor.emit(TaskRefused(task=task, robot=robot, reason=reason))
 
@@ -411,11 +383,6 @@ class RobotControl:
         if move.task not in ledger.tasks:
             raise ParameterError(f"move_task: {shown(move.task)}; expected the id of a task that there is by then")
         return moved(ledger.tasks[move.task], move.position)
-
-
-def _is_back(event: ExecutionEvent) -> bool:
-    """Whether a robot that was stuck takes part again because it moves: no operator has told that."""
-    return event.kind == "robot_returns" and "reason" in event.data
 
 
 def _revision(routes: Mapping[str, tuple[str, ...]], ahead: Mapping[str, Mapping[str, float]]) -> Revision:

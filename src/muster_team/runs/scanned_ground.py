@@ -57,7 +57,7 @@ class ScannedGround(TeamGround):
             raise ParameterError(
                 f"unknown: robot {name} is in the air; expected robots on the ground where robots negotiate, or a plan"
             )
-        require_wide_enough(mission, flies_by_voxels=False)
+        require_wide_enough(mission.all_robots, flies_by_voxels=False)
         super().__init__(mission, truth, team_map, None)
         self._pool = PooledMap(team_map)
         self._by_id = {robot.id: robot for robot in mission.all_robots}
