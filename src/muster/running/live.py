@@ -120,9 +120,13 @@ def carry_out_live(
             live.hear(live.time_s + LOOK_S)
     finally:
         live.stop()
+    report = live.result()
     if request.save_map is not None:
-        live.save_map(request.save_map)
-    return live.tell_report(live.result())
+        try:
+            live.save_map(request.save_map)
+        except OSError as error:  # robots have still to get their last orders
+            report = replace(report, remarks=(*report.remarks, f"the map is not written: {error}"))
+    return live.tell_report(report)
 
 
 class Live:

@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 
 from muster.mission.errors import ParameterError
@@ -15,7 +16,6 @@ from muster.running.run_request import OPEN_FLEET, RunRequest
 
 if TYPE_CHECKING:
     import threading
-    from pathlib import Path
 
     from muster.execution import ExecutionEvent, Recorder, Standing
     from muster.mission.system.clock import Clock
@@ -31,6 +31,14 @@ R = TypeVar("R")
 A = TypeVar("A")
 B = TypeVar("B")
 C = TypeVar("C")
+
+MAP_SUFFIXES = (".yaml", ".yml")
+"""Suffixes of files of maps in the form of ROS."""
+
+
+def files_of_map(file: Path) -> tuple[Path, Path, Path]:
+    """Return the files of a map that is saved: itself, its image, and in space the mission with what is in the air."""
+    return file, file.with_suffix(".pgm"), file.with_suffix(".mission.yaml")
 
 
 @record
@@ -83,6 +91,13 @@ class ObservedRun(RunRequest):
         yield from super().cross_check(values)
         if values["save_map"] is not None and not values["unknown"]:
             yield Fault(("save_map",), shown(str(values["save_map"])), "it together with unknown")
+        elif values["save_map"] is not None and Path(values["save_map"]).suffix not in MAP_SUFFIXES:
+            yield Fault(("save_map",), shown(str(values["save_map"])), f"a file ({' or '.join(MAP_SUFFIXES)})")
+
+    def require_place_of_map(self) -> None:
+        """Raise `ParameterError` if the folder of the map that is to be saved does not exist."""
+        if self.save_map is not None and not (folder := Path(self.save_map).parent).is_dir():
+            raise ParameterError(f"save_map: {self.save_map}; expected a file in a folder that exists, not in {folder}")
 
     @property
     def duty(self) -> Standing | None:

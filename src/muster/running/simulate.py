@@ -63,11 +63,14 @@ simulate = keywords_of_run.in_world(simulated)
 
 def _require_possible(mission: Mission, plan: Plan | Coordination, request: ObservedRun) -> None:
     """Refuse, before any file is opened, what is no plan and no coordination, and what neither can carry out."""
+    request.require_place_of_map()
     if isinstance(plan, Plan):
         plan.require_whole(accept_partial=request.accept_partial)
     elif isinstance(plan, Coordination):
-        if request.unknown:
-            raise ParameterError("unknown: true; expected a plan: without a centre robots share no map")
+        if request.explore:
+            raise ParameterError(
+                "explore: true; expected a plan, or no explore: without a centre nobody makes frontiers"
+            )
         plan.refuse_mission(mission)
     else:
         raise ParameterError(f"plan: {shown(plan)}; expected a Plan or a Negotiation")

@@ -216,8 +216,11 @@ class Simulation:
         Raises
         ------
         ParameterError
-            if the event names a robot or task that there is not, or one anew that there is.
+            if the event names a robot or task that there is not, or one anew that there is; if a robot that joins
+            without a map is too narrow for its lidar.
         """
+        if self._ground is not None and event.robot_joins is not None:
+            self._ground.require_able(event.robot_joins)
         if event.robot_joins is not None or event.robot_moved is not None:
             self._executor.require_room(event)
             self._take_event(event)  # the executor asks for its port, and where it is

@@ -18,6 +18,7 @@ from muster.perception.map_zones import zones_of
 from muster.perception.team_map import TeamMap
 from muster.running.exploration import Exploration
 from muster.running.explored_cells import ShownMap
+from muster.running.observed_run import files_of_map
 
 if TYPE_CHECKING:
     from muster.execution import Executor
@@ -77,7 +78,7 @@ class TeamGround:
         if self.map.air is not None and self.mission.map is not None:
             zones = (*self.mission.map.zones, *zones_of(self.map.air.seen))
             built = replace(self.mission, map=replace(self.mission.map, zones=zones))
-            built.save(file.with_suffix(".mission.yaml"))
+            built.save(files_of_map(file)[2])
 
     def follow_map(self, now: float, *, changed: bool) -> None:
         """Let robots go other ways where theirs turn out to be closed, and explore.

@@ -22,6 +22,7 @@ from muster.state.task_events import Ends, MoveTask, Starts
 TagOf = Callable[[str], int | None]
 """The tag that a task has come of, by the task's id; None: of none."""
 Shift = tuple[float, float]
+PlaceAt = Callable[[str, float], Shift | None]
 
 
 @dataclass(frozen=True)
@@ -58,17 +59,33 @@ class TruePlaces:
         where bodies truly are, and where robots take themselves to be.
     tag_of
         which tags tasks have come of.
+    place_at
+        where a robot truly was at a time of the mission, as far as that is known: for events that are heard late.
     """
 
-    def __init__(self, mission: Mission, world: SimulatedWorld, robots: RobotsInWorld, tag_of: TagOf) -> None:
+    def __init__(
+        self,
+        mission: Mission,
+        world: SimulatedWorld,
+        robots: RobotsInWorld,
+        tag_of: TagOf,
+        place_at: PlaceAt = lambda robot, time_s: None,
+    ) -> None:
         self._tags, self._world, self._robots, self._tag_of = mission.tags, world, robots, tag_of
+        self._place_at, self._happened_s = place_at, math.inf
         self._farthest: dict[str, dict[str, float]] = {}
         self._under_way: dict[str, Task] = {}
         self.done: dict[str, DoneAt] = {}
         """By task that robots have taken for done."""
 
-    def follow(self, events: Iterable[ExecutionEvent], tasks: Mapping[str, Task]) -> Iterator[OtherEvent]:
-        """Follow what robots tell of tasks, by id, while they stand where they did it; yields what is not done."""
+    def follow(
+        self, events: Iterable[ExecutionEvent], tasks: Mapping[str, Task], happened_s: float = math.inf
+    ) -> Iterator[OtherEvent]:
+        """Follow what robots tell of tasks, by id; yields what is not done.
+
+        It happened while robots stood where they did it: now, or at a time of the mission before.
+        """
+        self._happened_s = happened_s
         for event in events:
             if isinstance(event, Starts):
                 self._begin(tasks[event.task], event.team or (event.robot,))
@@ -83,7 +100,7 @@ class TruePlaces:
         pickup = None if task.action is None else task.action.pickup
         if pickup is not None:
             for robot in self._farthest[task.id]:
-                self._farthest[task.id][robot] = math.dist(self._true_place(robot), pickup[:2])
+                self._farthest[task.id][robot] = math.dist(self._place_of_deed(robot), pickup[:2])
 
     def look(self) -> None:
         """Note how far off robots are that work along a way."""
@@ -119,8 +136,8 @@ class TruePlaces:
 
     def _off_m(self, task: Task, robot: str, *, is_alone: bool) -> float:
         """How far off a robot is now. Those of a team stand about a place, and are as far off as they err."""
-        x, y = self._true_place(robot)
         at_place = is_alone and ends_at_its_place(task)
+        x, y = self._place_of_deed(robot) if at_place else self._true_place(robot)
         to = task.exit or task.position if at_place else self._believed_place(robot)
         east, north = self._found_off(task)
         return math.hypot(x - to[0] + east, y - to[1] + north)
@@ -128,6 +145,10 @@ class TruePlaces:
     def _true_place(self, robot: str) -> Shift:
         x, y, _ = self._world.ports[robot].true_position
         return x, y
+
+    def _place_of_deed(self, robot: str) -> Shift:
+        """Where a robot truly was when what it tells happened."""
+        return self._place_at(robot, self._happened_s) or self._true_place(robot)
 
     def _believed_place(self, robot: str) -> Shift:
         port = self._robots.ports[robot]

@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from muster.execution.reports.report import Report
 from muster.mission.model import Mission, Robot
-from muster.motion.grid import Bools, Floats
-from muster.motion.map_world import Body, body_of
-from muster.motion.paths.robot_paths import RobotPaths
+from muster.motion.grid import Floats
+from muster.motion.map_world import body_of
 from muster.motion.unreachable_places import checked_world
 from muster.perception.explored_paths import require_travel_by_map
 from muster.perception.laser import LIDAR
@@ -26,32 +25,18 @@ from muster.perception.occupancy_map import Scan
 from muster.perception.sphere_scanner import SPHERE_LIDAR
 from muster.perception.team_map import TeamMap
 from muster.perception.voxel_map import SpaceScan
+from muster.running.driven_ways import DrivenWays
 from muster.running.exploration import Exploration, looks_m
-from muster.running.team_ground import APART_CELLS, TeamGround
+from muster.running.lidar_scans import LOOK_S, LidarScans, is_heard, require_wide_enough
+from muster.running.team_ground import TeamGround
 from muster.simulation import SimulatedWorld
-from muster.state.robot_events import RobotAtEnd
-from muster.state.task_events import Arrives, Ends
 
 if TYPE_CHECKING:
-    from muster.execution import ExecutionEvent, Executor
+    from muster.execution import Executor
     from muster.motion.port import RobotPort, Telemetry
 
-LOOK_S = 0.5
-"""Seconds between two scans of a robot that moves."""
 KEEP_S = 5.0
 """Seconds between two snapshots of the map."""
-_ON_BORDER_M = 0.02
-"""From the border of a zone in which a beam ends there."""
-
-
-@dataclass
-class _Way:
-    """What a robot has driven between places of arrival, and what that takes with the map, metres."""
-
-    at: Floats
-    driven_before_m: float
-    driven_m: float = 0.0
-    with_map_m: float = 0.0
 
 
 @dataclass
@@ -80,20 +65,24 @@ class UnknownGround(TeamGround):
     Raises
     ------
     ParameterError
-        If the mission has no map by which robots travel.
+        If the mission has no map by which robots travel, or a robot is too narrow for its lidar.
     """
 
     def __init__(self, mission: Mission, *, explore: bool) -> None:
         require_travel_by_map(mission)
         truth = checked_world(mission)
         team_map = TeamMap(truth, mission)
+        require_wide_enough(mission.all_robots, flies_by_voxels=team_map.air is not None)
         super().__init__(mission, truth, team_map, Exploration(mission, team_map) if explore or mission.tags else None)
-        self._with_map = RobotPaths(truth)
         self._lidars: dict[str, _Lidar] = {}
-        self._ways: dict[str, _Way] = {}
+        self._ways = DrivenWays(truth)
         self._told = 0
         self._kept_s, self._kept = -math.inf, dict[str, Any]()
         self.due_s = -math.inf
+
+    def require_able(self, robot: Robot) -> None:
+        """Raise `ParameterError` if a robot that joins is too narrow for its lidar."""
+        require_wide_enough([robot], flies_by_voxels=self.map.air is not None)
 
     def snapshot(self) -> Mapping[str, Any]:
         """Return the map as plain data for `begin`; it is some seconds old at most."""
@@ -111,6 +100,7 @@ class UnknownGround(TeamGround):
     ) -> None:
         """Scan for the first time, in a world whose robots these are; with the map of a run that was interrupted."""
         self._world, self._ports, self._executor = world, ports, executor
+        self._scans = LidarScans(world, self._world_of_mission, lambda: self.paths.world, self.map.cell_m, self.robot)
         if snapshot is not None:
             self.map.resume(snapshot)
             self.paths.grown()
@@ -124,29 +114,34 @@ class UnknownGround(TeamGround):
             return
         self.due_s = now + LOOK_S
         self._executor.set_clock(now)
-        said = {name: port.telemetry() for name, port in self._ports.items()}
+        crew = self._executor.crew  # a robot that joins is in the world before it is one of it
+        said = {name: port.telemetry() for name, port in self._ports.items() if name in crew}
         self.follow_map(now, changed=self._scan(now, said))
-        self._measure_ways()
+        self._follow_ways()
         self.show(now)
 
     def with_ground(self, report: Report) -> Report:
         """Return a report with what was explored, and ways beside those with the map."""
-        self._measure_ways()
-        driven, known = (sum(getattr(way, name) for way in self._ways.values()) for name in ("driven_m", "with_map_m"))
-        report = super().with_ground(report)
-        assert report.ground is not None
-        return replace(report, ground=replace(report.ground, driven_m=driven, with_map_m=known))
+        self._follow_ways()
+        return self._ways.with_ways(super().with_ground(report))
+
+    def _follow_ways(self) -> None:
+        events = self._executor.events
+        self._ways.follow(self._world, events.since(self._told), self.robot)
+        self._told = events.total
 
     def _scan(self, now: float, said: Mapping[str, Telemetry | None]) -> bool:
         """Let robots scan; return whether the map of obstacles has changed."""
         self.map.begin_look()
         for number, name in enumerate(self._world.ports):
+            if name not in self._executor.crew:
+                continue
             lidar = self._lidars.setdefault(name, _Lidar())
             place = self._world.positions[number].copy()
             still = math.dist(place, lidar.at) < self.map.cell_m
             if still and not lidar.unsent:
                 continue
-            heard = _is_heard(said.get(name), now, self._world.dt_s)
+            heard = is_heard(said.get(name), now, self._world.dt_s)
             if not still:
                 lidar.at = place
                 told = said.get(name) if heard else None
@@ -169,93 +164,10 @@ class UnknownGround(TeamGround):
         """Return what a robot sees: around itself where the team maps the air, and in its plane unless it is there."""
         scans: list[Scan | SpaceScan] = []
         if self.map.air is not None:
-            scans.append(self._space_scan_of(name, number, told, said))
+            scans.append(self._scans.around(self.robot(name), number, told, said))
         if self.map.air is None or self.robot(name).kind != "air":
-            scans.append(self._scan_of(name, number, told, said))
+            scans.append(self._scans.in_plane(self.robot(name), number, told, said))
         return scans
-
-    def _space_scan_of(
-        self, name: str, number: int, told: Telemetry | None, said: Mapping[str, Telemetry | None]
-    ) -> SpaceScan:
-        """One scan all around; where another robot says that it is there is no obstacle."""
-        eye, heading = self._world.positions[number].copy(), float(self._world.headings[number])
-        if told is not None:
-            eye, heading = np.array(told.position), told.heading
-        seen = self._world.scan_space(name, SPHERE_LIDAR)
-        scan = SpaceScan(eye, heading, seen.ranges, np.isfinite(seen.ranges) & ~seen.on_ground, seen.on_ground)
-        ends, _ = scan.points(SPHERE_LIDAR)
-        scan.hits[scan.hits] = self._are_things(name, ends, said)
-        return scan
-
-    def _are_things(self, robot: str, places: Floats, said: Mapping[str, Telemetry | None]) -> Bools:
-        """Return which places (n, d) at which a robot met something are not where other robots say that they are."""
-        is_thing = np.ones(len(places), dtype=np.bool_)
-        margin_m = APART_CELLS * self.map.cell_m
-        for one, other in said.items():
-            if other is not None and one != robot:
-                away = np.linalg.norm(places - np.array(other.position)[: places.shape[1]], axis=1)
-                is_thing &= away > self.robot(one).radius_m + margin_m
-        return is_thing
-
-    def _scan_of(self, name: str, number: int, told: Telemetry | None, said: Mapping[str, Telemetry | None]) -> Scan:
-        """One scan from where the robot truly is, with the pose that it takes for its own, as far as it is heard.
-
-        Where another robot says that it is, and on the border of a zone that is closed by rule, there is no obstacle.
-        """
-        (x, y), heading = self._world.positions[number, :2], float(self._world.headings[number])
-        if told is not None:
-            (x, y), heading = told.position[:2], told.heading
-        ranges = self._world.scan(name, LIDAR)
-        scan = Scan.of((float(x), float(y), heading), ranges)
-        angles = heading + LIDAR.bearings[scan.hits]
-        ends = np.column_stack([x + ranges[scan.hits] * np.cos(angles), y + ranges[scan.hits] * np.sin(angles)])
-        is_ruled = self._on_ruled_borders(body_of(self.robot(name)), ends)
-        scan.hits[scan.hits] = self._are_things(name, ends, said) & ~is_ruled
-        return scan
-
-    def _on_ruled_borders(self, body: Body, places: Floats) -> Bools:
-        """Whether places (n, 2) are on the border of a zone that a body may not enter, and that is no obstacle."""
-        import shapely
-
-        image = self._world_of_mission.image
-        within_m = _ON_BORDER_M if image is None else image.resolution_m
-        on = np.zeros(len(places), dtype=np.bool_)
-        for area in self.paths.world.stopping(body, self._world_of_mission.dimensions == 3):
-            on |= shapely.distance(area.polygon.exterior, shapely.points(places)) <= within_m
-        return on
-
-    def _measure_ways(self) -> None:
-        """Compare what robots drove from arrival to arrival with the ways that the true map has."""
-        driven, places = self._world.distances_m, self._world.positions
-        for name, place in zip(self._world.ports, places, strict=True):
-            self._ways.setdefault(name, _Way(place.copy(), driven[name]))
-        events = self._executor.events
-        for event in events.since(self._told):
-            self._measure_way(event, driven)
-        self._told = events.total
-
-    def _measure_way(self, event: ExecutionEvent, driven: Mapping[str, float]) -> None:
-        names: tuple[str, ...]
-        if isinstance(event, Arrives | RobotAtEnd):
-            names = (event.robot,)
-        elif isinstance(event, Ends):
-            names = tuple(one for one in (event.robot, *event.team) if one)
-        else:
-            return
-        for name in names:
-            way, number = self._ways[name], list(self._world.ports).index(name)
-            place = self._world.positions[number].copy()
-            if not isinstance(event, Ends):
-                size = self._world_of_mission.dimensions
-                leg = self._with_map.leg_m(body_of(self.robot(name)), tuple(way.at[:size]), tuple(place[:size]))
-                if math.isfinite(leg):
-                    way.with_map_m += leg
-                    way.driven_m += driven[name] - way.driven_before_m
-            way.at, way.driven_before_m = place, driven[name]
-
-
-def _is_heard(said: Telemetry | None, now: float, dt_s: float) -> bool:
-    return said is not None and said.time_s >= now - dt_s / 2
 
 
 def unknown_ground_for(mission: Mission, unknown: bool, explore: bool) -> UnknownGround | None:

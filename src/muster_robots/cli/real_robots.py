@@ -25,7 +25,7 @@ from muster.cli.options.common import (
 from muster.cli.options.planning import planning_options, request_of
 from muster.cli.options.request import request_options, settings_from
 from muster.cli.outputs import require_drawable, require_writable
-from muster.cli.record_output import drawing_options, kept_record, record_option
+from muster.cli.record_output import drawing_options, kept_record, map_outputs, record_option, save_map_option
 from muster.cli.tables.report import print_report
 from muster.cli.tables.table import sequence
 from muster.mission.errors import IncompletePlanError, MusterError
@@ -75,6 +75,7 @@ def real_options(
         resume_option,
         record_option,
         drawing_options,
+        *(() if "unknown" in without else (save_map_option,)),
         foxglove_option,
         require_complete_option,
         format_option,
@@ -86,7 +87,7 @@ def real_options(
         def with_options(*, options: PlanningOptions, how: Mapping[str, Any], **given: Any) -> Any:
             name, texts = given.pop("fleet", fleet), given.pop("setting", ())
             rules = {"seed": options.seed, "ignore": options.ignore, "planning": options}
-            request = _request(name, {**how, **rules}, texts)
+            request = replace(_request(name, {**how, **rules}, texts), save_map=given.pop("save_map", None))
             asked = {name: given.pop(name) for name in own}
             return verb(options=RealRunOptions(request=request, planning=options, **asked), **given)
 
@@ -108,7 +109,7 @@ def _request(fleet: str, how: Mapping[str, Any], texts: Sequence[str]) -> Observ
 
 def require_outputs(options: RealRunOptions, inputs: tuple[str | Path | None, ...]) -> None:
     """Refuse, before robots move, files that cannot be written or would replace one that is read."""
-    files = (options.record, options.html, options.plot, options.gantt)
+    files = (options.record, options.html, options.plot, options.gantt, *map_outputs(options.request.save_map))
     require_writable(None, files, inputs, (options.plan, options.start, options.fixed))
     require_drawable(options.plot, options.gantt)
     require_free_port(options.foxglove)

@@ -315,4 +315,4 @@ def opening_of(base: Base) -> Opening:
     for task, robot in counted:
         past.setdefault(robot, []).append(task)
     ahead = {robot: [claim.task for claim in claims if not claim.begun] for robot, claims in base.routes.items()}
-    return Opening(past, ahead, base.closed, tuple(fact.content for fact in base.added))
+    return Opening(past, ahead, base.closed, tuple(fact.content for fact in base.added), base.seen)

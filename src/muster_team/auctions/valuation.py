@@ -8,7 +8,7 @@ other's routes without messages.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import ClassVar, Protocol
 
@@ -23,7 +23,7 @@ from muster.model.problem import Problem
 from muster_team.auctions.capabilities import AGREED, refuse_once_together, refuse_what_is_not_agreed
 from muster_team.auctions.task_sales import TaskSales
 from muster_team.auctions.unit_sales import UnitSales
-from muster_team.knowledge.messages import Bid, RoundBids, Sold
+from muster_team.knowledge.messages import Bid, Reach, RoundBids, Sold
 from muster_team.knowledge.new_tasks import task_of, with_tasks
 
 _MISFITS_KEPT = 1000  # more orders under way at once than operators give
@@ -43,12 +43,15 @@ class Opening:
         tasks that are not for sale.
     added
         tasks that were added to the mission, as `new_tasks.content_of` writes them, in tie order.
+    seen
+        the pieces of the map that all members have, where robots build one.
     """
 
     past: Mapping[str, Sequence[str]] = field(default_factory=dict)
     ahead: Mapping[str, Sequence[str]] = field(default_factory=dict)
     closed: Collection[str] = ()
     added: tuple[bytes, ...] = ()
+    seen: tuple[Reach, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -125,8 +128,11 @@ class TeamValuer(ABC):
     ----------
     can
         what rules of time, teams and relations the method agrees on.
+    by_map
+        where robots build a map, what returns the problem with ways by some pieces of it.
     """
 
+    by_map: Callable[[Problem, tuple[Reach, ...]], Problem] | None = None
     can: ClassVar[frozenset[str]] = NONE
 
     def __init__(self, problem: Problem, robot: str) -> None:
@@ -134,7 +140,7 @@ class TeamValuer(ABC):
         self._given = self._whole = self.problem = problem
         self._robots, self._tasks = problem.robot_index, problem.task_index
         self._me = self._robots[robot]
-        self._added: tuple[bytes, ...] = ()
+        self._opened_with: tuple[tuple[bytes, ...], tuple[Reach, ...]] = ((), ())
         self._misfits: dict[tuple[bytes, ...], str] = {}
 
     def check(self, tasks: Sequence[bytes]) -> None:
@@ -172,8 +178,10 @@ class TeamValuer(ABC):
         return "" if wrong is None else f"the task {shown(wrong)}, which there is not, or twice"
 
     def begin(self, opening: Opening) -> Mapping[str, Sequence[str]]:
-        if opening.added != self._added:
-            self._added, self._whole = opening.added, with_tasks(self._given, opening.added)
+        if (opening.added, opening.seen) != self._opened_with:
+            self._opened_with = (opening.added, opening.seen)
+            given = self._given if self.by_map is None else self.by_map(self._given, opening.seen)
+            self._whole = with_tasks(given, opening.added)
         number = self._whole.task_index
         past, ahead = self._by_index(opening.past, number), self._by_index(opening.ahead, number)
         self.problem = with_past(self._whole, past) if any(past) else self._whole

@@ -111,6 +111,8 @@ def _declaration(rules: Rules, said: Declaration) -> Iterator[str]:
     if len(said.incarnations) != len(said.members):
         yield f"{len(said.incarnations)} incarnations of {len(said.members)} members"
     yield from _counts("incarnation", [number for number in said.incarnations if number != -1])
+    yield from _robots(rules, [one.robot for one in said.seen])
+    yield from _counts("number of pieces", [number for one in said.seen for number in (one.life, one.pieces)])
     known = {fact.task for fact in said.facts if fact.kind == "added"}
     claimed: set[str] = set()
     for claim in said.route:

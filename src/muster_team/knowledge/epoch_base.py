@@ -12,7 +12,7 @@ from graphlib import CycleError, TopologicalSorter
 from hashlib import blake2b
 
 from muster_team.knowledge.facts import deeds, holders, in_order
-from muster_team.knowledge.messages import Claim, Declaration, Fact
+from muster_team.knowledge.messages import Claim, Declaration, Fact, Reach
 from muster_team.knowledge.orders import orders_among
 from muster_team.knowledge.rules import Rules
 
@@ -45,6 +45,8 @@ class Base:
         tasks begun by several members, with these. All of them continue: work under way is never broken off.
     rounds
         the number of rounds seen in all.
+    seen
+        the pieces of the map that all members have.
     digest
         eight bytes; members with equal digests have the same base.
     """
@@ -58,6 +60,7 @@ class Base:
     dropped: tuple[tuple[str, str], ...]
     twice: Mapping[str, tuple[str, ...]]
     rounds: int
+    seen: tuple[Reach, ...]
     digest: bytes
 
     def keeping(self, kept: Mapping[str, Sequence[str]]) -> Base:
@@ -118,8 +121,16 @@ def agreed(declarations: Sequence[Declaration], rules: Rules) -> Base:
         dropped=tuple((d.robot, c.task) for d in declarations for c in d.route if c.task not in still[d.robot]),
         twice=twice,
         rounds=min(max(declaration.rounds for declaration in declarations), MOST_ROUNDS),
+        seen=_seen_by_all(declarations),
         digest=_digest(declarations),
     )
+
+
+def _seen_by_all(declarations: Sequence[Declaration]) -> tuple[Reach, ...]:
+    """The pieces of the map that all have declared to have: of each life of a robot the first ones."""
+    counts = [{(one.robot, one.life): one.pieces for one in declared.seen} for declared in declarations]
+    shared = set(counts[0]).intersection(*counts[1:])
+    return tuple(Reach(*track, min(count[track] for count in counts)) for track in sorted(shared))
 
 
 def _reserved(declarations: Sequence[Declaration], facts: frozenset[Fact]) -> dict[str, str]:

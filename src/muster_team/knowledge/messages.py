@@ -76,6 +76,15 @@ class Fact:
 
 
 @dataclass(frozen=True, slots=True)
+class Reach:
+    """How many pieces of the map a robot has that another one made in one of its lives, without a gap."""
+
+    robot: str
+    life: int
+    pieces: int
+
+
+@dataclass(frozen=True, slots=True)
 class Declaration:
     """What a robot declares at the beginning of an epoch, once per epoch.
 
@@ -94,6 +103,8 @@ class Declaration:
     knows
         whether it remembers everything that it has ever stated; False after a start without memory until others have
         told it.
+    seen
+        the pieces of the map that it has, where robots build one.
     proof
         by the key of the robot: see `signatures`; empty where robots have no keys.
     """
@@ -107,6 +118,7 @@ class Declaration:
     rounds: int = 0
     incarnations: tuple[int, ...] = ()
     knows: bool = True
+    seen: tuple[Reach, ...] = ()
     proof: bytes = b""
 
 

@@ -215,6 +215,27 @@ class Negotiator(Participant):
         """
         self._owned.release(task, self._rules)
 
+    @property
+    def offers(self) -> bool:
+        """Whether the robot puts what it has not begun up for sale again in the next epoch."""
+        return self._owned.offers
+
+    def offer(self, keeps: str = "") -> None:
+        """Put all tasks up for sale again that the robot owns and has not begun, and bid for them like the others.
+
+        That happens in the next epoch, for whatever reason that begins: `open_offer` is one.
+
+        Parameters
+        ----------
+        keeps
+            a task that it keeps all the same, as it is on its way there.
+        """
+        self._owned.offers, self._owned.keeps = True, keeps
+
+    def open_offer(self) -> None:
+        """Begin an epoch for what the robot offers."""
+        self._owned.epoch_due |= self._owned.offers
+
     def withdraw(self) -> None:
         """Give back all tasks that were not begun, and do not bid any more."""
         self._owned.withdraw()

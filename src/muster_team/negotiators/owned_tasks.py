@@ -37,6 +37,9 @@ class OwnedTasks:
         whether it takes no more tasks.
     epoch_due
         whether the others have to learn of a change at once, in a new epoch.
+    offers, keeps
+        whether it puts what it has not begun up for sale again in the next epoch, and bids for that like the others;
+        and the task that it keeps of these.
     joint
         its part in tasks that several robots begin at the same moment. Such a task is never `begun`: it is kept as long
         as the team is, and given up with it.
@@ -51,6 +54,8 @@ class OwnedTasks:
     unsent: list[Fact] = field(default_factory=list)
     withdrawn: bool = False
     epoch_due: bool = False
+    offers: bool = False
+    keeps: str = ""
     joint: JointStarts = field(init=False)
 
     def __post_init__(self) -> None:
@@ -80,8 +85,11 @@ class OwnedTasks:
         """The claims of an epoch that still hold, without tasks that are known since then to have moved."""
         knew = epoch.own.facts if epoch.base is None else epoch.base.facts
         moved = {fact.task for fact in self.known.facts.difference(knew) if fact.kind == "moved"}
+        claims = self.left_of(epoch.route())
+        if self.offers:
+            moved.update(claim.task for claim in claims if claim.task not in {*self.reserved, self.keeps})
         moved -= self.joint.under_way.keys()
-        return tuple(claim for claim in self.left_of(epoch.route()) if claim.begun or claim.task not in moved)
+        return tuple(claim for claim in claims if claim.begun or claim.task not in moved)
 
     def say(self, task: str, kind: str, content: bytes = b"") -> Fact:
         """State a fact once."""

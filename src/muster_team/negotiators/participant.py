@@ -13,7 +13,7 @@ robot that has the lacking data sends it.
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import repeat
 from typing import Any
@@ -32,6 +32,7 @@ from muster_team.knowledge.messages import (
     Fact,
     Heartbeat,
     Message,
+    Reach,
     Stage,
 )
 from muster_team.knowledge.rules import Rules
@@ -56,6 +57,10 @@ RESTATED = 3
 """How often other routes of a robot lead to a new epoch. So a liar does not keep the team busy."""
 
 
+def _no_pieces() -> tuple[Reach, ...]:
+    return ()
+
+
 @dataclass
 class Participant:
     """One robot of the auction.
@@ -77,6 +82,8 @@ class Participant:
         robots that join later; nobody waits for them.
     signatures
         the proofs of who has stated what, where robots have keys of their own.
+    seen
+        tells which pieces of the map the robot has, where robots build one.
     """
 
     robot: str
@@ -88,6 +95,7 @@ class Participant:
     forgot: bool = False
     absent: Collection[str] = ()
     signatures: Signatures = NO_KEYS
+    seen: Callable[[], tuple[Reach, ...]] = _no_pieces
 
     def __post_init__(self) -> None:
         self.rules = replace(self.rules, misfit=self.valuer.misfit)
@@ -257,6 +265,7 @@ class Participant:
             rounds=rounds,
             incarnations=tuple(self.incarnation if r == self.robot else self.members.incarnation(r) for r in members),
             knows=self.knows,
+            seen=self.seen(),
         )
         return self.signatures.sign(own)
 
@@ -269,6 +278,7 @@ class Participant:
         self.epoch = Epoch(own, self.rules, self.valuer, refused, signatures=self.signatures)
         self._restart_heard = work.epoch_due = False
         work.unsent.clear()  # the declaration contains them
+        work.offers = False  # it does not claim what it offers
         self._peer_progress.enter()
         self._stalled.enter(self.stage, now)
         self.counts.news += 1

@@ -24,6 +24,7 @@ from muster_team.knowledge.messages import (
     Fact,
     Heartbeat,
     Message,
+    Reach,
     RoundBids,
     Sold,
     Stage,
@@ -45,7 +46,7 @@ from muster_team.network.plain_values import (
     rows,
 )
 
-PROTOCOL = 7
+PROTOCOL = 8
 """The version of the protocol, 0 to 255: of this table, and of the rules by which robots bid and agree."""
 
 
@@ -71,6 +72,7 @@ def _message_forms(robot: Form, task: Form) -> dict[str, Form]:
             rounds=COUNT,
             incarnations=_incarnations(),
             knows=FLAG,
+            seen=rows(record(Reach, robot=robot, life=COUNT, pieces=COUNT), 3),
         )
     )
     return {

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Self
+from typing import Protocol, Self
 
 from muster.mission.system.clock import Clock, SystemClock
 from muster_team.knowledge.effects import Outgoing
@@ -18,6 +18,9 @@ from muster_team.network.peer_sessions import PeerSessions
 from muster_team.network.plain_values import MalformedError
 from muster_team.network.robot_keys import PROOF_BYTES
 from muster_team.network.transport import Transport
+
+BESIDE = b"\xff"
+"""The first byte of messages beside the negotiation, which is that of no version of the protocol."""
 
 _LOOK_S = 0.25
 """The longest time between two evaluations of the end condition of `run`."""
@@ -40,8 +43,8 @@ class NodeStatus:
     settled
         whether all members are known to agree, and nobody bids any more.
     sent, sent_bytes, received
-        messages sent by kind (`news`, `repairs`, `heartbeats`, `greetings`), their bytes on the network, messages
-        received.
+        messages sent by kind (`news`, `repairs`, `heartbeats`, `greetings`, `beside`), their bytes on the network,
+        messages received.
     refused
         messages that were not accepted, by reason: as `PeerSessions.counts`, `malformed`, `unsigned` (not by the key of
         the robot that they name), and `not_admitted` (see `admission`).
@@ -71,6 +74,24 @@ class NodeStatus:
     superseded: bool
 
 
+class BesideChannel(Protocol):
+    """What robots send each other beside the negotiation, by the same transport, such as maps."""
+
+    def handle(self, data: bytes, now: float) -> Iterable[tuple[bytes, str | None]]:
+        """Process a message; return those to send, each with the robot that it is for, or None for all.
+
+        Raises
+        ------
+        MalformedError
+            if it is none.
+        """
+        ...
+
+    def tick(self, now: float) -> Iterable[tuple[bytes, str | None]]:
+        """Let time pass; return the messages to send."""
+        ...
+
+
 class Node:
     """Runs a negotiator. A context manager: entering it starts the negotiation, leaving it closes the transport.
 
@@ -90,6 +111,8 @@ class Node:
     keep
         stores what the robot needs after a restart; by default it does nothing. The node calls it before it sends
         anything; a caller that carries tasks out calls it before work begins.
+    beside
+        what goes over the same transport beside the negotiation; it is not signed, so not where robots have keys.
     """
 
     def __init__(
@@ -98,6 +121,7 @@ class Node:
         self.negotiator, self.transport = negotiator, transport
         self.in_reach = True
         self.keep: Callable[[], None] = lambda: None
+        self.beside: BesideChannel | None = None
         self.sent: Counter[str] = Counter()
         self.sent_bytes: Counter[str] = Counter()
         self.received = 0
@@ -133,6 +157,8 @@ class Node:
                 self._take_in(said)
         self._greet()
         self._send(self.negotiator.tick(self._clock.now()))
+        if self.beside is not None:
+            self._send_beside(self.beside.tick(self._clock.now()))
 
     def run(self, until: Callable[[Node], bool], at_most_s: float | None = None) -> bool:
         """Step until a condition holds; return whether it did in time."""
@@ -174,6 +200,9 @@ class Node:
 
     def _take_in(self, said: bytes) -> None:
         proof, data = said[: self._proof_bytes], said[self._proof_bytes :]
+        if self.beside is not None and data[:1] == BESIDE:
+            self._take_in_beside(self.beside, data[1:])
+            return
         try:
             message = self._codec.decode(data)
         except OtherVersionError:
@@ -186,6 +215,20 @@ class Node:
                 return
             self.received += 1
             self._send(self.negotiator.handle(message, self._clock.now()))
+
+    def _take_in_beside(self, channel: BesideChannel, data: bytes) -> None:
+        try:
+            answers = channel.handle(data, self._clock.now())
+        except MalformedError:
+            self._garbled["malformed"] += 1
+        else:
+            self.received += 1
+            self._send_beside(answers)
+
+    def _send_beside(self, out: Iterable[tuple[bytes, str | None]]) -> None:
+        for data, to in out:
+            piece = BESIDE + data
+            self._transmit("beside", [piece if self._met is None else self._met.close(piece)], to)
 
     def _greet(self) -> None:
         """Ask unknown processes for a proof, and answer those that ask."""

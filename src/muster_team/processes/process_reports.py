@@ -9,6 +9,7 @@ from typing import Any
 
 from muster.allocation.auctions.auction_terms import Terms
 from muster.model.problem import Problem
+from muster.perception.team_map import TeamMap
 from muster_team.knowledge.messages import Stage
 from muster_team.membership.members import Timeouts
 from muster_team.negotiators.robot_view import View
@@ -42,6 +43,8 @@ class TeamSetup:
         what a robot's process does; None: it takes part in the auction and does nothing else.
     speed
         by how much the mission's time goes faster than real time.
+    ground
+        the map, as far as it is known beforehand, where robots build it; None: they have it.
     """
 
     problem: Problem
@@ -55,6 +58,7 @@ class TeamSetup:
     memory: Path | None = None
     part: Callable[[Any], None] | None = None
     speed: float = 1.0
+    ground: TeamMap | None = None
 
     @property
     def processes(self) -> list[tuple[str, int]]:

@@ -13,6 +13,7 @@ from typing import Any
 from muster.execution.reports.team_report import RefusedOrder
 from muster.mission.model import Event
 from muster.motion.port import Telemetry, Waypoint
+from muster.perception.occupancy_map import Scan
 
 
 @dataclass(frozen=True)
@@ -34,6 +35,21 @@ class BodyState:
     telemetry: Telemetry
     orders: int
     used: float
+
+
+@dataclass(frozen=True)
+class LidarScan:
+    """What the robot's lidar sees, where robots have no map. Places of robots that it hears are left out."""
+
+    scan: Scan
+
+
+@dataclass(frozen=True)
+class MapPieces:
+    """The pieces of its map that a robot has made in a life, for those who look on."""
+
+    life: int
+    pieces: Sequence[bytes]
 
 
 @dataclass(frozen=True)
@@ -75,6 +91,8 @@ class WorkReport:
         the number of operator events that it has received.
     refused_at_once, refused_by_team
         why it refused operator events since its last report, and all orders that do not count, as far as it knows.
+    ways_closed
+        how often it has gone another way, as its own was closed by what its team saw.
     """
 
     events: Sequence[tuple[float, str, Mapping[str, Any]]]
@@ -84,3 +102,4 @@ class WorkReport:
     heard: int
     refused_at_once: Sequence[str] = ()
     refused_by_team: Sequence[RefusedOrder] = ()
+    ways_closed: int = 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections import deque
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
@@ -25,7 +26,16 @@ from muster_team.knowledge.messages import Stage
 from muster_team.negotiators.methods import method_named
 from muster_team.processes.process_reports import SHOW, TeamSetup
 from muster_team.processes.team import Team
-from muster_team.runs.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
+from muster_team.runs.pipe_messages import (
+    BodyState,
+    LidarScan,
+    MapPieces,
+    OperatorEvent,
+    RadioState,
+    SteerCommand,
+    WorkReport,
+)
+from muster_team.runs.scanned_ground import ScannedGround
 from muster_team.runs.team_log import TeamLog
 from muster_team.runs.team_watch import TeamWatch
 
@@ -38,6 +48,9 @@ _ANSWER_S = 0.5
 _MOST_STEP_S = 0.5
 """The longest step in the mission's time, seconds: robots receive no sensor data within a step."""
 
+_KEPT = 1200
+"""Places of each robot that are kept, one a step, for what it tells late: those of a minute of real time."""
+
 MOST_SPEED = _MOST_STEP_S / _STEP_S
 """The largest speed-up over real time."""
 
@@ -49,10 +62,19 @@ class RobotBodies:
     camera_search: CameraSearch | None = None
 
     def __init__(
-        self, mission: Mission, world: SimulatedWorld, robots: RobotsInWorld, setup: TeamSetup, log: TeamLog
+        self,
+        mission: Mission,
+        world: SimulatedWorld,
+        robots: RobotsInWorld,
+        setup: TeamSetup,
+        log: TeamLog,
+        ground: ScannedGround | None = None,
     ) -> None:
-        self._world, self._setup, self._log = world, setup, log
-        self.true_places = TruePlaces(mission, world, robots, self._tag_of)
+        self._mission, self._world, self._setup, self._log, self.ground = mission, world, setup, log, ground
+        self.true_places = TruePlaces(mission, world, robots, self._tag_of, self._place_at)
+        self._places: dict[
+            str, deque[tuple[float, tuple[float, float]]]
+        ] = {}  # of each robot when it was sent its state
         self._telemetry_source = robots
         self._method = method_named(setup.method)
         self._future_events = sorted(mission.events, key=lambda event: event.at_s)
@@ -72,16 +94,22 @@ class RobotBodies:
         """Process what a robot sends to its body, or reports of itself."""
         if isinstance(report, SteerCommand):
             self._orders[robot] = self._world.ports[robot].send(report.waypoints)
+        elif isinstance(report, MapPieces) and self.ground is not None:
+            self.ground.take(robot, report.life, report.pieces)
         elif isinstance(report, WorkReport):
             self._work_reports[robot], self._log.used[robot] = report, report.used
             self.watch.refused_by_team(robot, report.refused_by_team)
             for reason in report.refused_at_once:
                 self.watch.refused_at_once(robot, reason)
-            told = len(self._log.events)
             for at_s, kind, data in report.events:
+                told = len(self._log.events)
                 self._log.take(robot, at_s, kind, data, report.used)
-            for off in self.true_places.follow(self._log.events[told:], self._log.state.ledger.tasks):
-                self._log.tell(off)
+                for off in self.true_places.follow(self._log.events[told:], self._log.state.ledger.tasks, at_s):
+                    self._log.tell(off)
+
+    def _place_at(self, robot: str, time_s: float) -> tuple[float, float] | None:
+        """Where a robot was when it was last sent its state, up to a time: what it tells, it did there."""
+        return next((place for at_s, place in reversed(self._places.get(robot, ())) if at_s <= time_s + 1e-9), None)
 
     @property
     def ports(self) -> Mapping[str, RobotPort]:
@@ -132,13 +160,29 @@ class RobotBodies:
             assert said is not None
             body = BodyState(self.time_s, said, self._orders.get(robot, 0), self._log.used[robot])
             self.team.send(robot, body, latest=True)
+            x, y, _ = self._world.ports[robot].true_position
+            self._places.setdefault(robot, deque(maxlen=_KEPT)).append((self.time_s, (x, y)))
             self._log.see(robot, said, self.time_s)
+        self._scan()
         self.team.poll(0.0)  # even if the step took all the time: unread reports fill the pipes
         while (left_s := until_s - time.monotonic()) > 0:
             self.team.poll(left_s)
         statuses = {robot: progress.status for robot, progress in self.team.progress.items()}
         self.watch.look(self.time_s, self.team.living, self.team.ended, statuses)
         self._take_agreement()
+
+    def _scan(self) -> None:
+        """Send robots without a map what their lidars see."""
+        if self.ground is None:
+            return
+        for robot, scan in self.ground.scans(self.team.living, self._connected).items():
+            self.team.send(robot, LidarScan(scan), latest=True)
+        self.ground.follow()
+
+    @property
+    def ways_closed(self) -> int:
+        """How often robots have gone other ways, as theirs were closed by what their team saw."""
+        return sum(report.ways_closed for report in self._work_reports.values())
 
     def _check_cameras(self) -> None:
         """Evaluate the cameras. Tasks from their findings go to one robot, which sends them to the others."""
@@ -261,7 +305,7 @@ class RobotBodies:
     @cached_property
     def _travel(self) -> Travel:
         """What knows walls and closed areas."""
-        return travel_of(self._setup.problem.mission)
+        return travel_of(self._mission)
 
     def _fail(self, robot: str) -> None:
         """A robot breaks down, with its process."""
@@ -279,6 +323,8 @@ class RobotBodies:
             self._work_reports.pop(robot, None)
             self._events_sent.pop(robot, None)
             self.team.start(robot)
+            if self.ground is not None:
+                self.ground.forget(robot)
         elif robot in self._cut_off:
             self._set_radio(robot, on=True)
         else:

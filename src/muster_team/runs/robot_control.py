@@ -21,7 +21,7 @@ from muster.model.problem import Problem
 from muster.model.schedule import held_back_for
 from muster.motion.port import RobotPort
 from muster.state import OtherEvent
-from muster.state.task_events import MISSED, Ends, TaskRefused
+from muster.state.task_events import Ends, TaskRefused
 from muster.state.task_ledger import moved
 from muster_team.auctions.capabilities import refuse_once_together
 from muster_team.knowledge.facts import deeds, in_order
@@ -29,6 +29,8 @@ from muster_team.knowledge.messages import ORDERS, Fact
 from muster_team.knowledge.new_tasks import content_of, task_of
 from muster_team.knowledge.orders import Orders
 from muster_team.negotiators.negotiator import Negotiator
+from muster_team.runs.own_events import ITS_OWN, MISSES, REFUSALS, is_back
+from muster_team.runs.robot_ground import RobotGround
 
 NOTICE_HEARTBEATS = 3.0
 """The time before a joint begin in which all have to learn of it, in heartbeats."""
@@ -36,33 +38,8 @@ NOTICE_HEARTBEATS = 3.0
 LATENESS = 0.1
 """The share of the time until a task begins by which it may be late; what it must follow soon is held back for that."""
 
-_MISSED = frozenset(event.kind for event in MISSED.values())
-_ITS_OWN = {
-    "sets_out",
-    "arrives",
-    "starts",
-    "ends",
-    "returns",
-    "robot_at_end",
-    "no_way_to_end",
-    "robot_sent_again",
-    "robot_runs_low",
-    "robot_stuck",
-    "robot_stands_aside",
-    "robot_goes_round",
-    "robot_makes_room",
-    "waits_in_traffic",
-    "goes_on",
-    "traffic_jam",
-    "task_refused",
-    "waits",
-    "work_broken_off",
-    *_MISSED,
-}
-"""Events that nobody else knows of."""
-
-_REFUSALS = {"task_refused", *_MISSED}
-"""Of these, those that say why a robot does not do a task."""
+OFFER_REST_S = 5.0
+"""Real seconds between two epochs that a robot opens as its way has turned out to be longer: robots have to agree."""
 
 
 class RobotControl:
@@ -84,6 +61,8 @@ class RobotControl:
         the usage so far, in the mission's unit.
     speed
         by how much the mission's time goes faster than that of messages.
+    ground
+        the map that the robot builds with the others; None: it has one.
     """
 
     def __init__(
@@ -94,9 +73,11 @@ class RobotControl:
         now: float,
         used: float,
         speed: float = 1.0,
+        ground: RobotGround | None = None,
     ) -> None:
         mission = problem.mission.at_once()
         robot_paths = problem.robot_paths if mission.has_paths else None
+        robot_paths = robot_paths if ground is None else ground.paths
         self._travel = travel_of(mission, robot_paths)
         self._negotiator = negotiator
         self._executor = Executor(
@@ -109,6 +90,9 @@ class RobotControl:
             now=now,
             peers=self,
         )
+        self._ground = ground
+        if ground is not None:
+            ground.begin(self._executor)
         self._limited = problem.holds("capacity")
         self._hand = self._executor.crew[port.robot]
         self._hand.recall(used)
@@ -120,6 +104,9 @@ class RobotControl:
         self._known = 0  # the digest of what was learned
         self._first = 0  # the number of the first event of this tick
         self._left_with: dict[str, tuple[float, float]] = {}  # the usage for tasks broken off, the last time
+        self._offer_again_s, self._offer_rest_s = now, OFFER_REST_S * speed
+        if ground is not None:
+            negotiator.offer()  # what was agreed first counts on what nobody has seen yet
         self._notice_s = NOTICE_HEARTBEATS * negotiator.timeouts.heartbeat_s * speed
 
     @property
@@ -138,6 +125,9 @@ class RobotControl:
         self._break_off()
         self._learn()
         self._give_back_dropped()
+        if self._ground is not None:
+            self._executor.set_clock(now)
+            self._ground.look(now)
         wanted = self._wanted
         if not self._hand.out and (wanted != self._hand.route or any(map(self._too_late_for, wanted))):
             self._executor.plan_again(OtherEvent(kind="agreed"))
@@ -145,11 +135,29 @@ class RobotControl:
         for event in self._executor.tick(now):
             if event.kind == "ends":
                 self._negotiator.finish(event.data["task"])
-            elif _is_back(event):
+            elif is_back(event):
                 self._negotiator.come_back()
+            elif event.kind == "way_closed":
+                self._negotiator.offer(keeps=next(iter(self._hand.route), ""))
+        if self._negotiator.offers and self._negotiator.settled and now >= self._offer_again_s:
+            self._offer_again_s = now + self._offer_rest_s
+            self._negotiator.open_offer()
+        self._tell_unreachable()
         self._negotiator.joint.leave_all_but(self._at)
-        news = [event for event in self._news if event.kind in _ITS_OWN or _is_back(event)]
-        return [event for event in news if event.kind not in _MISSED or event.data["task"] in routed]
+        news = [event for event in self._news if event.kind in ITS_OWN or is_back(event)]
+        return [event for event in news if event.kind not in MISSES or event.data["task"] in routed]
+
+    def _tell_unreachable(self) -> None:
+        """Tell, once all is done that the robot owns, which tasks of nobody its map proves to be out of its reach."""
+        ledger, hand = self._executor.ledger, self._hand
+        if self._ground is None or not (self._negotiator.settled and self.idle) or hand.out:
+            return
+        for task in ledger.open:
+            known = hand.robot.id in ledger.refusals.get(task.id, {}) or not task.is_open_to(hand.robot.id)
+            if known or self._negotiator.owners([task.id]):
+                continue
+            if not self._ground.reaches(hand.position, task):
+                self._refuse(task.id, "unreachable: there is no way")
 
     def take_event(self, event: Event) -> str | None:
         """Apply what an operator tells for the whole team; return the reason if it makes no sense."""
@@ -354,7 +362,7 @@ class RobotControl:
     def _refuse(self, task: str, reason: str) -> None:
         """Tell why the robot gives a task back or up, unless the executor has just told it."""
         robot = self._negotiator.robot
-        told = (event.data["task"] for event in self._news if event.kind in _REFUSALS)
+        told = (event.data["task"] for event in self._news if event.kind in REFUSALS)
         if task not in told:
             self._executor.emit(TaskRefused(task=task, robot=robot, reason=reason))
 
@@ -375,11 +383,6 @@ class RobotControl:
         if move.task not in ledger.tasks:
             raise ParameterError(f"move_task: {shown(move.task)}; expected the id of a task that there is by then")
         return moved(ledger.tasks[move.task], move.position)
-
-
-def _is_back(event: ExecutionEvent) -> bool:
-    """Whether a robot that was stuck takes part again because it moves: no operator has told that."""
-    return event.kind == "robot_returns" and "reason" in event.data
 
 
 def _revision(routes: Mapping[str, tuple[str, ...]], ahead: Mapping[str, Mapping[str, float]]) -> Revision:

@@ -8,11 +8,21 @@ from queue import Empty
 
 from muster.mission.model import Event
 from muster.motion.port import Telemetry, Waypoint
+from muster_team.network.map_link import MapLink
 from muster_team.processes.node import Node
 from muster_team.processes.process_reports import Ready
 from muster_team.processes.team_process import ProcessContext, ProgressReporter, StarterCommands
-from muster_team.runs.pipe_messages import BodyState, OperatorEvent, RadioState, SteerCommand, WorkReport
+from muster_team.runs.pipe_messages import (
+    BodyState,
+    LidarScan,
+    MapPieces,
+    OperatorEvent,
+    RadioState,
+    SteerCommand,
+    WorkReport,
+)
 from muster_team.runs.robot_control import RobotControl
+from muster_team.runs.robot_ground import RobotGround
 
 _STEP_S = 0.02
 """The longest time between two looks at the body's state, seconds."""
@@ -69,11 +79,21 @@ class RobotWorker:
         self._events: list[Event] = []
         self._refused: list[str] = []
         self._reported: WorkReport | None = None
+        setup, problem = context.setup, context.problem
+        self._ground: RobotGround | None = None
+        if setup.ground is not None:
+            robots = [robot.id for robot in problem.robots]
+            link = MapLink(context.robot, context.start_number, robots, setup.timeouts.heartbeat_s)
+            self._ground = RobotGround(problem, setup.ground, context.robot, link)
+            self._ground.join(node)
 
     def receive(self, messages: Sequence[object]) -> None:
         for message in messages:
             if isinstance(message, BodyState):
                 self._sense(message)
+            elif isinstance(message, LidarScan) and self._ground is not None:
+                if pieces := self._ground.see(message.scan):
+                    self._context.pipe.send(MapPieces(self._context.start_number, pieces))
             elif isinstance(message, RadioState):
                 self._node.in_reach = message.on
             elif isinstance(message, OperatorEvent):
@@ -99,6 +119,7 @@ class RobotWorker:
             heard=self._heard,
             refused_at_once=tuple(self._refused),
             refused_by_team=control.refused_orders,
+            ways_closed=0 if self._ground is None else self._ground.ways_closed,
         )
         self._refused.clear()
         if did != self._reported:
@@ -122,6 +143,7 @@ class RobotWorker:
                 sense.now_s,
                 sense.used,
                 context.setup.speed,
+                self._ground,
             )
         else:
             self._port.said = sense.telemetry

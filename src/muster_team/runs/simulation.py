@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from muster.allocation.auctions.auction_terms import Terms
 from muster.execution import Recorder, Report, report_of
@@ -26,6 +27,7 @@ from muster_team.processes.process_reports import TeamSetup
 from muster_team.processes.team import Team, timeouts_for
 from muster_team.runs.robot_bodies import MOST_SPEED, RobotBodies
 from muster_team.runs.robot_process import run_robot_process
+from muster_team.runs.scanned_ground import ScannedGround
 from muster_team.runs.team_log import TeamLog
 
 
@@ -57,29 +59,24 @@ def negotiate_and_carry_out(
     Raises
     ------
     ParameterError
-        if `speed` is larger, or traffic by reservation is asked for.
+        if `speed` is larger, or traffic by reservation is asked for; as `ScannedGround`.
     MusterError
         if there is no agreement in time, or a robot cannot take part.
     """
-    speed, traffic = request.speed, request.traffic
-    if speed is not None and speed > MOST_SPEED:
-        raise ParameterError(f"speed: {speed:g}; expected at most {MOST_SPEED:g}, as robots talk in real time")
-    if traffic == RESERVE:
-        raise ParameterError(f"traffic: {traffic}; expected free: without a centre nobody plans for all")
-    for event in mission.events:
-        if event.door is not None:
-            raise ParameterError(
-                f"events: door {event.door}; expected none without a centre, where nobody tells of doors"
-            )
+    _refuse_request(mission, request)
+    speed = request.speed
     with ExitStack() as stack:
         memory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        ground = ScannedGround(mission) if request.unknown else None
         bodies = recorded_world(mission, request, recorder)
         if request.on_world is not None:
             request.on_world(bodies)
-        setup = setup_of(mission, memory, speed or 1.0, method=method, terms=terms, transport=transport)
+        how: dict[str, Any] = {"method": method, "terms": terms, "transport": transport}
+        setup = setup_of(mission if ground is None else ground.mission, memory, speed or 1.0, **how)
+        setup = setup if ground is None else replace(setup, ground=ground.known)
         log = TeamLog(setup.problem, recorder or NoObserver(), request.on_event or (lambda event: None), setup.late)
         robots = with_state_estimation(bodies, mission, pose=request.pose, localise=request.localise, seed=request.seed)
-        robot_bodies = RobotBodies(mission, bodies, robots, setup, log)
+        robot_bodies = RobotBodies(mission, bodies, robots, setup, log, ground)
         camera_search = camera_search_for(
             mission,
             bodies,
@@ -93,9 +90,13 @@ def negotiate_and_carry_out(
             robot_bodies.camera_search = camera_search
         robot_bodies.team = stack.enter_context(Team(setup, robot_bodies.take_report))
         halt = request.halt or threading.Event()
+        if ground is not None:
+            ground.begin_in(bodies, robots, log)
         robot_bodies.await_agreement(limit_s, halt)
         while not halt.is_set() and not robot_bodies.over:
             robot_bodies.step(setup.speed)
+        if ground is not None:
+            ground.follow(over=True)
         if robot_bodies.over:
             log.end()
         report = report_of(log.account, contacts=len(bodies.contacts), min_distance_m=bodies.min_distance_m)
@@ -104,9 +105,26 @@ def negotiate_and_carry_out(
             report = replace(report, remarks=(*report.remarks, robots.remark))
         report = with_truth(with_found(report, camera_search), mission, robot_bodies.true_places.done)
         report = with_tracking(report, bodies)
+        report = report if ground is None else ground.with_all(report, robot_bodies.ways_closed)
         if recorder is not None:
             recorder.on_report(report.as_dict())
+        if ground is not None and request.save_map is not None:
+            ground.save(Path(request.save_map))
         return report
+
+
+def _refuse_request(mission: Mission, request: ObservedRun) -> None:
+    """Raise ParameterError for what robots cannot do without a centre, or not in real time."""
+    speed, traffic = request.speed, request.traffic
+    if speed is not None and speed > MOST_SPEED:
+        raise ParameterError(f"speed: {speed:g}; expected at most {MOST_SPEED:g}, as robots talk in real time")
+    if traffic == RESERVE:
+        raise ParameterError(f"traffic: {traffic}; expected free: without a centre nobody plans for all")
+    for event in mission.events:
+        if event.door is not None:
+            raise ParameterError(
+                f"events: door {event.door}; expected none without a centre, where nobody tells of doors"
+            )
 
 
 def setup_of(

@@ -18,7 +18,7 @@ from muster.model.problem import Problem
 from muster.motion.port import Telemetry
 from muster.state import ExecutionEvent, MissionState, OtherEvent, event_of
 from muster.state.event import KINDS
-from muster.state.robot_events import RobotReturns, RobotSilent, RobotStuck, TrafficJam
+from muster.state.robot_events import RobotReturns, RobotSilent, RobotStuck, TrafficJam, WayClosed
 from muster.state.run_events import MissionEnded, PlanAdopted, Replanned
 from muster.state.task_events import (
     CancelTask,
@@ -37,7 +37,7 @@ from muster.verification import verify
 
 _SAME_JAM_S = 30.0
 """Seconds within which two robots tell of one jam."""
-_CAUSES = (RobotStuck, RobotReturns, TaskRefused, WorkBrokenOff, TaskMissed)
+_CAUSES = (RobotStuck, RobotReturns, TaskRefused, WorkBrokenOff, TaskMissed, WayClosed)
 """What robots tell that makes them agree anew."""
 _NEW_AGREEMENT = {"kind": "new_agreement"}
 """Robots agreed anew, and told of nothing that has happened: they lost each other, or met again."""
@@ -140,7 +140,9 @@ class TeamLog:
     def lost(self) -> dict[str, str]:
         """Every task that is not done, and why."""
         ledger = self.state.ledger
-        reasons = {item.task: self._why(item) for item in self._plans[-1].unassigned} if self._plans else {}
+        left_out = {task: Unassigned(task, ()) for task in ledger.refusals}  # also by robots that agree no more
+        left_out |= {item.task: item for item in self._plans[-1].unassigned} if self._plans else {}
+        reasons = {task: self._why(item) for task, item in left_out.items()}
         return ledger.lost(lambda task: ledger.expired.get(task) or reasons.get(task) or "not done", self.state.gone)
 
     def _why(self, item: Unassigned) -> str:

@@ -24,7 +24,7 @@ class SimulatedTeam:
     """
 
     def __init__(self, mission, *, seed=0, links=None, later=(), **conditions):
-        self.problem = Problem.compile(mission).ready()
+        self.problem = self.problem_of(mission)
         self.world = KinematicWorld(mission, seed=seed)
         self.robots = [robot.id for robot in self.problem.robots]
         self.net = MemoryNetwork(self._negotiator, self.robots, seed, LinkConditions(**conditions), links)
@@ -34,6 +34,10 @@ class SimulatedTeam:
         for robot in self.robots:
             if robot not in later:
                 self.start(robot)
+
+    def problem_of(self, mission):
+        """What robots know of the mission."""
+        return Problem.compile(mission).ready()
 
     def _negotiator(self, robot, incarnation):
         remembered, forgot = self._memories.pop(robot, None), incarnation > 1
@@ -74,9 +78,13 @@ class SimulatedTeam:
             while self.world.advance(now):
                 pass
             self.net.run(now)
-            for robot, control in self.controls.items():
-                self.told += [(h.time_s, robot, h.kind, h.data) for h in control.tick(now)]
+            self.step(now)
         return until()
+
+    def step(self, now):
+        """Let robots control their bodies, and tell what they did."""
+        for robot, control in self.controls.items():
+            self.told += [(h.time_s, robot, h.kind, h.data) for h in control.tick(now)]
 
     @property
     def rests(self):

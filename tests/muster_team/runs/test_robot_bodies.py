@@ -11,6 +11,7 @@ from muster.allocation.auctions.auction import Parameters
 from muster.execution.record import NoObserver
 from muster.mission.events import MovedRobot
 from muster.mission.model import MovedTask
+from muster.motion.port import Waypoint
 from muster.running.state_estimation import with_state_estimation
 from muster.simulation import NO_NOISE, KinematicWorld, Noise
 from muster_team.knowledge.messages import Stage
@@ -262,3 +263,20 @@ def test_robots_that_err_about_their_poses_are_told_the_fused_ones(tmp_path):
         if robot == "a" and isinstance(word, BodyState)
     ]
     assert 0 < math.dist(sensed[-1], (0.0, 0.0, 0.0)) < 0.06  # of 30 reports, each 0.14 off
+
+
+@pytest.mark.parametrize("away", [False, True])
+def test_what_a_robot_did_is_judged_by_where_it_was_then_however_late_it_is_heard(tmp_path, away):
+    """A process that has to wait for its turn tells late; the body has gone on by then."""
+    robot_bodies, log = bodies_of((), tmp_path)
+    port = robot_bodies.ports["a"]
+    robot_bodies.step(1.0)
+    at_place_s = robot_bodies.time_s
+    port.send([Waypoint((3.0, 0.0, 0.0))])
+    while port.telemetry().position[0] < 2.0:
+        robot_bodies.step(10.0)
+    begins_s, ends_s = (robot_bodies.time_s,) * 2 if away else (at_place_s, at_place_s)
+    starts = (begins_s, "starts", {"task": "t", "robot": "a"})
+    robot_bodies.take_report("a", did(starts, (ends_s, "ends", {"task": "t", "robot": "a", "usage": (1.0, 1.0)})))
+    assert robot_bodies.true_places.done["t"].is_done is not away
+    assert ("off_place" in [event.kind for event in log.events]) is away

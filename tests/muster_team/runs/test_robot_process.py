@@ -25,7 +25,7 @@ def test_what_a_robot_begins_is_kept_before_its_body_begins():
             begun.append([{claim.task for claim in memory.claims if claim.begun} for memory in kept[-1:]])
 
     node = SimpleNamespace(negotiator=negotiator, keep=lambda: kept.append(negotiator.memory))
-    setup, pipe = SimpleNamespace(speed=1.0), SimpleNamespace(send=send)
+    setup, pipe = SimpleNamespace(speed=1.0, ground=None), SimpleNamespace(send=send)
     worker = RobotWorker(SimpleNamespace(robot="a", problem=problem, setup=setup, pipe=pipe), node)
     negotiator.start(0.0)
     while world.time_s < 60 and "t" not in {fact.task for fact in negotiator.facts if fact.done}:

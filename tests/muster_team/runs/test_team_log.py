@@ -112,6 +112,12 @@ def test_a_lost_task_has_the_reasons_of_the_robots_that_refused_it_and_none_of_t
     assert log.lost()["t"].startswith("no robot takes part any more")
 
 
+def test_a_task_that_robots_refuse_after_the_last_plan_has_their_reasons(log):
+    log.take("a", 4.0, "task_refused", {"task": "t", "robot": "a", "reason": "unreachable: there is no way"}, used=1.0)
+    log.take("b", 4.0, "task_refused", {"task": "t", "robot": "b", "reason": "unreachable: there is no way"}, used=1.0)
+    assert log.lost()["t"] == "unreachable: there is no way (a, b)"
+
+
 def test_robots_that_agree_anew_without_a_word_have_a_cause_for_it(log):
     agree(log, 0.0)
     agree(log, 5.0)

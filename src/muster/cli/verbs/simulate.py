@@ -26,7 +26,7 @@ from muster.cli.options.planning import ctrl_c_interrupts, planning_options, req
 from muster.cli.options.request import request_options
 from muster.cli.options.run_outputs import AskedOutputs, not_at_server, run_output_options
 from muster.cli.outputs import require_drawable, require_writable
-from muster.cli.record_output import drawing_options, kept_record, record_option
+from muster.cli.record_output import drawing_options, kept_record, map_outputs, record_option, save_map_option
 from muster.cli.tables.report import print_report
 from muster.cli.whole_work import whole_work
 from muster.mission.errors import ParameterError
@@ -89,12 +89,7 @@ class _Asked:
 @record_option
 @drawing_options
 @click.option("--found", type=_FILE, metavar="FILE", help="Draw what cameras found (.png, .svg, .pdf).")
-@click.option(
-    "--save-map",
-    type=_FILE,
-    metavar="FILE",
-    help="Write the map that is built with --unknown as ROS has maps (.yaml, the image beside it).",
-)
+@save_map_option
 @run_output_options
 @foxglove_option
 @require_complete_option
@@ -156,7 +151,8 @@ def _request(asked: _Asked, options: PlanningOptions, how: Mapping[str, Any]) ->
 
 def _require_outputs(asked: _Asked, mission: MissionFile, world: str) -> None:
     """Refuse files that cannot be written, or would replace one that is read."""
-    files = (asked.record, asked.html, asked.plot, asked.gantt, *asked.outputs.files, asked.found, asked.save_map)
+    files = (asked.record, asked.html, asked.plot, asked.gantt, *asked.outputs.files, asked.found)
+    files += map_outputs(asked.save_map)
     require_writable(None, files, mission.files, (asked.plan, asked.start, asked.fixed))
     require_drawable(asked.plot, asked.gantt, asked.found)
     asked.outputs.require_possible(world)
