@@ -45,7 +45,7 @@ FAULTS = {
     ),
     "perception": Fault("src/muster/perception/kalman.py", "left @ p @ left.T + gain", "left @ p @ left.T - gain"),
     "execution": Fault(
-        "src/muster/execution/goods_ledger.py", "sums.get(name, 0.0) + amount", "sums.get(name, 0.0) - amount"
+        "src/muster/state/goods_ledger.py", "sums.get(name, 0.0) + amount", "sums.get(name, 0.0) - amount"
     ),
     "simulation": Fault("src/muster/simulation/energy.py", "self.used(), self.drain)", "self.used(), -self.drain)"),
     "exchange": Fault(

@@ -1,11 +1,13 @@
 """Plans carried out by moving robots: actions over maps, and what changes meanwhile."""
 
+import math
 from dataclasses import replace
 
 import pytest
 
 import muster
 from muster import Mission, Robot, Rules, Task
+from muster.mission.events import MovedRobot
 from muster.mission.model import Action, Camera, DelayedTask, Event, Map, MovedTask, Zone
 from muster.mission.plan import Plan, Route
 from muster.running.simulation import carry_out
@@ -235,3 +237,18 @@ def test_rules_are_ignored_by_the_caller_alone():
     assert waits.starts_s["then"] == pytest.approx(30, abs=0.4)
     ignoring = muster.simulate(mission, muster.Plan(routes=routes), ignore=["prerequisite"])
     assert ignoring.starts_s["then"] == pytest.approx(1, abs=0.4)
+
+
+def test_what_the_mission_file_says_of_the_beginning_happens_at_the_beginning():
+    robots = (Robot(id="r", position=(0, 0)), Robot(id="s", position=(0, 1)), Robot(id="t", position=(0, 2)))
+    events = (
+        Event(at_s=0.0, robot_joins=Robot(id="new", position=(9, 0))),
+        Event(at_s=0.0, robot_moved=MovedRobot(robot="r", position=(0, 5))),
+        Event(at_s=0.0, robot_fails="s"),
+        Event(at_s=0.0, robot_removed="t"),
+    )
+    locked = tuple(Task(id=f"of {name}", position=(9, k), only_robots=(name,)) for k, name in enumerate(("new", "r")))
+    mission = Mission(robots=robots, tasks=locked, events=events)
+    report = carry_out(mission, muster.solve(mission, "greedy"))
+    assert set(report.tasks_done) == {"of new", "of r"}
+    assert report.starts_s["of r"] == pytest.approx(math.dist((0, 5), (9, 1)), abs=0.2)

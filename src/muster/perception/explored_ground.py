@@ -104,10 +104,13 @@ class ExploredGround:
         What is known beforehand, of `ruled_world`.
     seen : OccupancyMap
         What was seen; `grown` is to be called when cells of it have become occupied or free.
+    least_m : float, default 0
+        How far every body keeps off what was seen, metres, however narrow it is.
     """
 
     rules: World
     seen: OccupancyMap
+    least_m: float = 0.0
     _made: dict[tuple[Body, int], _Finder] = field(default_factory=dict, init=False, repr=False)
     _ruled: dict[tuple[Body, int], Bools] = field(default_factory=dict, init=False, repr=False)
 
@@ -143,11 +146,11 @@ class ExploredGround:
 
         Where a way does not fit after all its cells are blocked, and another is sought.
         """
-        finder = self._finder(body, POSSIBLE)
+        finder, room_m = self._finder(body, POSSIBLE), self._room_m(body)
         tree = self.seen.tree()
         while (points := finder.way(start, goal)) is not None:
             cell_m = self.seen.frame.resolution_m
-            points, narrow = in_the_middle(points, tree, cell_m, body.radius_m + _SPARE * cell_m, body.radius_m * _FITS)
+            points, narrow = in_the_middle(points, tree, cell_m, room_m + _SPARE * cell_m, room_m * _FITS)
             if not len(narrow):
                 return points
             finder = self._made[body, POSSIBLE] = finder.without(narrow)
@@ -170,7 +173,7 @@ class ExploredGround:
         """Return whether a body can stand at a place, as far as is known."""
         if not self._may_be(body, place[None, :2])[0]:
             return False
-        return self.seen.nearest_m(place[:2]) >= body.radius_m * (1 - _SLACK)
+        return self.seen.nearest_m(place[:2]) >= self._room_m(body) * (1 - _SLACK)
 
     def is_clear(self, body: Body, points: Floats, certainty: int, cells: Indices) -> bool:
         """Return whether no obstacle in cells (n, 2) is too near to the line through points (k, 2).
@@ -180,8 +183,9 @@ class ExploredGround:
         """
         if not len(cells):
             return True
-        spare = (_SLACK if certainty == CERTAIN else 1 - _FITS) * body.radius_m
-        least_m = max(body.radius_m - spare, _HALF * self.seen.frame.resolution_m)
+        room_m = self._room_m(body)
+        spare = (_SLACK if certainty == CERTAIN else 1 - _FITS) * room_m
+        least_m = max(room_m - spare, _HALF * self.seen.frame.resolution_m)
         return bool(self.seen.from_line_m(points, cells).min() >= least_m)
 
     def is_free(self, body: Body, points: Floats) -> bool:
@@ -194,6 +198,10 @@ class ExploredGround:
     def free_cells(self, body: Body, certainty: int = CERTAIN) -> Bools:
         """Return which cells are free for a body as far as is known, unseen ones included."""
         return ~self._finder(body, certainty).blocked
+
+    def _room_m(self, body: Body) -> float:
+        """Return how far a body keeps off what was seen, in metres."""
+        return max(body.radius_m, self.least_m)
 
     def _may_be(self, body: Body, places: Floats) -> Bools:
         return free(self.rules.free_space(body.radius_m, body.kind), places)
@@ -208,10 +216,10 @@ class ExploredGround:
         """Return the cells that are blocked by rule, and those whose centres are too near to what was hit."""
         cell_m = self.seen.frame.resolution_m
         if self.seen.fills_cells:
-            least = max(body.radius_m * (1 - _SLACK), _SLACK * cell_m)
+            least = max(self._room_m(body) * (1 - _SLACK), _SLACK * cell_m)
         else:
             spare = _HALF + _SPARE if certainty == CERTAIN else -_HALF
-            least = max(body.radius_m + spare * cell_m, _HALF * cell_m)
+            least = max(self._room_m(body) + spare * cell_m, _HALF * cell_m)
         self.seen.require_clearance(least + cell_m)
         near: Bools = self.seen.clearances < least
         return self._by_rule(body, certainty) | near

@@ -102,6 +102,12 @@ class TeamMap:
         rank = self._rank(body)
         return next((layer.ground for layer in self._layers if layer.rank >= rank), self.ground)
 
+    def keep_off(self, least_m: float) -> None:
+        """Let bodies on the ground keep off what was seen, by so many metres and two cells at least; 0: as they are."""
+        for layer in self._layers if least_m else ():
+            layer.ground.least_m = max(layer.ground.least_m, least_m, 2 * self.cell_m)
+            layer.ground.grown()
+
     def close(self, rules: World) -> None:
         """Take over rules that have changed: doors that have closed or opened."""
         for layer in self._layers:

@@ -5,14 +5,12 @@ Where other robots say that they are there is no obstacle, nor on the border of 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
 from muster.motion.grid import Bools, Floats
 from muster.motion.map_world import Body, World, body_of
@@ -27,31 +25,29 @@ if TYPE_CHECKING:
     from muster.motion.port import Telemetry
 
 LOOK_S = 0.5
-"""Seconds between two scans of a robot that moves."""
+"""Seconds between two scans of robots that move."""
+_NARROW_LOOK_S = 0.1
+"""Seconds between two scans of a team with narrow robots."""
+_WIDE_S = 0.05
+"""Seconds in which a robot that is not narrow drives no farther than its radius."""
 _ON_BORDER_M = 0.02
 """From the border of a zone in which a beam ends there."""
 
 
-def require_wide_enough(robots: Iterable[Robot], *, flies_by_voxels: bool) -> None:
-    """Raise `ParameterError` if a robot is so narrow that it fits between two beams that meet one wall.
+def room_m(robots: Iterable[Robot]) -> float:
+    """Return how far narrow robots keep off what lidars meet, in metres; 0 where there are none.
 
-    Along a wall at a distance r two beams that are b apart meet it s ahead of the robot s² b / r from each other. That
-    is no passage for a robot of radius r, as far as it drives before it scans again, from r = s √(b / 2) on.
-
-    Parameters
-    ----------
-    robots : iterable of Robot
-        The robots.
-    flies_by_voxels : bool
-        Whether robots in the air go by voxels, which are wide enough.
+    Between two scans a robot drives on by what it knows: round a corner into what it has not seen, or where a wall that
+    it drives along is met by few beams. One that is wide keeps far enough off the corner and the wall. A narrow one is
+    one that drives farther than its radius in a twentieth of a second.
     """
-    for robot in robots:
-        least_m = robot.speed_mps * LOOK_S * math.sqrt(LIDAR.step_rad / 2)
-        if robot.radius_m < least_m and not (flies_by_voxels and robot.kind == "air"):
-            raise ParameterError(
-                f"unknown: robot {robot.id} has radius_m {robot.radius_m:g}; expected at least {least_m:.3f} m at "
-                f"{robot.speed_mps:g} m/s: between the beams of its lidar a narrower robot drives into walls"
-            )
+    rooms_m = [(robot.speed_mps * _WIDE_S, robot.radius_m) for robot in robots]
+    return max((least_m for least_m, radius_m in rooms_m if radius_m < least_m), default=0.0)
+
+
+def look_s(least_m: float) -> float:
+    """Return the seconds between two scans of robots that keep off walls by what `room_m` returns."""
+    return _NARROW_LOOK_S if least_m else LOOK_S
 
 
 @dataclass(frozen=True)

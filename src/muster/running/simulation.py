@@ -149,6 +149,7 @@ class Simulation:
             self._executor.plan_again(GroundUnknown(cell_m=ground.cell_m))
             kept = None if begun is None else begun.bodies.get("map")
             ground.begin(self._world, self._robots.ports, self._executor, kept)
+        self._take_due()
         self._tick()
 
     @property
@@ -201,8 +202,7 @@ class Simulation:
         while not self.done and self.time_s < until_s - 1e-9 and self._executor.events.total == first:
             due_s = min(until_s, self.time_s + LOOK_S, self._executor.due_s, self._look_due_s)
             self._robots.advance(max(due_s, self.time_s + self._world.dt_s))
-            while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
-                self._take_event(self._ahead.pop(0))
+            self._take_due()
             self._look()
             self._tick()
         return self._executor.events.since(first)
@@ -216,11 +216,10 @@ class Simulation:
         Raises
         ------
         ParameterError
-            if the event names a robot or task that there is not, or one anew that there is; if a robot that joins
-            without a map is too narrow for its lidar.
+            if the event names a robot or task that there is not, or one anew that there is.
         """
         if self._ground is not None and event.robot_joins is not None:
-            self._ground.require_able(event.robot_joins)
+            self._ground.take_in(event.robot_joins)
         if event.robot_joins is not None or event.robot_moved is not None:
             self._executor.require_room(event)
             self._take_event(event)  # the executor asks for its port, and where it is
@@ -340,6 +339,11 @@ class Simulation:
         self._world.close(doors)
         if self._traffic is not None:
             self._traffic.close(doors)
+
+    def _take_due(self) -> None:
+        """Let bodies have what events of the mission file do to them that are due."""
+        while self._ahead and self._ahead[0].at_s <= self.time_s + 1e-9:
+            self._take_event(self._ahead.pop(0))
 
     def _take_event(self, event: Event) -> None:
         """What an event does to bodies; what it does to the plan is the executor's affair."""

@@ -27,7 +27,7 @@ from muster.perception.team_map import TeamMap
 from muster.perception.voxel_map import SpaceScan
 from muster.running.driven_ways import DrivenWays
 from muster.running.exploration import Exploration, looks_m
-from muster.running.lidar_scans import LOOK_S, LidarScans, is_heard, require_wide_enough
+from muster.running.lidar_scans import LidarScans, is_heard, look_s, room_m
 from muster.running.team_ground import TeamGround
 from muster.simulation import SimulatedWorld
 
@@ -65,24 +65,25 @@ class UnknownGround(TeamGround):
     Raises
     ------
     ParameterError
-        If the mission has no map by which robots travel, or a robot is too narrow for its lidar.
+        If the mission has no map by which robots travel.
     """
 
     def __init__(self, mission: Mission, *, explore: bool) -> None:
         require_travel_by_map(mission)
         truth = checked_world(mission)
         team_map = TeamMap(truth, mission)
-        require_wide_enough(mission.all_robots, flies_by_voxels=team_map.air is not None)
         super().__init__(mission, truth, team_map, Exploration(mission, team_map) if explore or mission.tags else None)
         self._lidars: dict[str, _Lidar] = {}
         self._ways = DrivenWays(truth)
         self._told = 0
         self._kept_s, self._kept = -math.inf, dict[str, Any]()
         self.due_s = -math.inf
+        self.take_in(*mission.all_robots)
 
-    def require_able(self, robot: Robot) -> None:
-        """Raise `ParameterError` if a robot that joins is too narrow for its lidar."""
-        require_wide_enough([robot], flies_by_voxels=self.map.air is not None)
+    def take_in(self, *robots: Robot) -> None:
+        """Take in robots, or one that joins."""
+        in_plane = [robot for robot in robots if self.map.air is None or robot.kind != "air"]
+        self.map.keep_off(room_m(in_plane))
 
     def snapshot(self) -> Mapping[str, Any]:
         """Return the map as plain data for `begin`; it is some seconds old at most."""
@@ -112,7 +113,7 @@ class UnknownGround(TeamGround):
         """Let robots scan if that is due, go other ways where theirs turn out to be closed, and explore."""
         if now < self.due_s - 1e-9:
             return
-        self.due_s = now + LOOK_S
+        self.due_s = now + look_s(self.map.ground.least_m)
         self._executor.set_clock(now)
         crew = self._executor.crew  # a robot that joins is in the world before it is one of it
         said = {name: port.telemetry() for name, port in self._ports.items() if name in crew}

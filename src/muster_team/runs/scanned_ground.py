@@ -20,7 +20,7 @@ from muster.perception.map_pieces import PooledMap
 from muster.perception.occupancy_map import Scan
 from muster.perception.team_map import TeamMap
 from muster.running.driven_ways import DrivenWays
-from muster.running.lidar_scans import LOOK_S, LidarScans, require_wide_enough
+from muster.running.lidar_scans import LidarScans, look_s, room_m
 from muster.running.state_estimation import RobotsInWorld
 from muster.running.team_ground import SHOW_S, TeamGround
 from muster.simulation import SimulatedWorld
@@ -44,8 +44,7 @@ class ScannedGround(TeamGround):
     Raises
     ------
     ParameterError
-        If the mission has no map by which robots travel, robots in the air of a mission in space, or a robot that is
-        too narrow for its lidar.
+        If the mission has no map by which robots travel, or has robots in the air of a mission in space.
     """
 
     def __init__(self, mission: Mission) -> None:
@@ -57,7 +56,8 @@ class ScannedGround(TeamGround):
             raise ParameterError(
                 f"unknown: robot {name} is in the air; expected robots on the ground where robots negotiate, or a plan"
             )
-        require_wide_enough(mission.all_robots, flies_by_voxels=False)
+        for built in (self.known, team_map):
+            built.keep_off(room_m(mission.all_robots))
         super().__init__(mission, truth, team_map, None)
         self._pool = PooledMap(team_map)
         self._by_id = {robot.id: robot for robot in mission.all_robots}
@@ -83,7 +83,7 @@ class ScannedGround(TeamGround):
         """
         if self._world.time_s < self._due_s - 1e-9:
             return {}
-        self._due_s = self._world.time_s + LOOK_S
+        self._due_s = self._world.time_s + look_s(self.map.ground.least_m)
         said = {name: port.telemetry() for name, port in self._robots.ports.items()}
         told = {name: said[name] for name in connected if name in said}
         scans = {}
