@@ -245,7 +245,7 @@ def test_a_robot_that_joins_maps_too():
 
 
 @pytest.mark.parametrize("walls", [((4.0, 1.0, 0.3, 7.0),), POCKET], ids=["wall", "pocket"])
-@pytest.mark.parametrize("speed_mps", [0.1, 1.0, 4.0])
+@pytest.mark.parametrize("speed_mps", [1.0, 4.0, pytest.param(0.1, marks=pytest.mark.long)])
 @pytest.mark.parametrize("width", [0.0, 0.5])
 def test_a_narrow_robot_keeps_off_walls_of_which_its_beams_miss_parts(width, speed_mps, walls):
     """The world stops bodies at walls, and a point nowhere: it would be inside."""
