@@ -34,7 +34,7 @@ def test_three_drones_one_of_which_runs_low(kind, offboard):
     plan = muster.solve(there, iterations=200)
     planned = {route.robot: route.tasks for route in plan.routes}
     assert all(len(tasks) >= 2 for tasks in planned.values())
-    sky = Sky(there, kind, {"r_1": Faults(low_battery_at_s=11)})
+    sky = Sky(there, kind, {"r_1": Faults(low_battery_at_s=10)})
 
     listening = sky.fleet(there, arm=False, offboard=offboard)
     listening.advance(listening.time_s + 10)
@@ -87,9 +87,7 @@ def test_three_drones_one_of_which_runs_low(kind, offboard):
         assert (said["SET_POSITION_TARGET_LOCAL_NED"] > 0) == offboard
         if not offboard:
             sets_out = [h for h in heard if h.kind == "sets_out" and h.data["robot"] == robot]
-            later_s = [*(h.time_s for h in sets_out[1:]), float("inf")]
-            kept = [h for h, end_s in zip(sets_out, later_s, strict=True) if end_s > h.time_s + 1.0]
-            assert said["MISSION_COUNT"] >= len(kept) > 0  # an order may be replaced before it is uploaded
+            assert said["MISSION_COUNT"] >= len(sets_out) > 0
             assert said["MISSION_ITEM_INT"] >= 2 * said["MISSION_COUNT"]
     modes = [m for m in r_1.heard if m.get_type() == "COMMAND_LONG" and m.command == mavlink.MAV_CMD_DO_SET_MODE]
     assert (modes[-1].param2, modes[-1].param3) == kind.mode_parameters(kind.back)
