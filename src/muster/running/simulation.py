@@ -218,10 +218,10 @@ class Simulation:
         ParameterError
             if the event names a robot or task that there is not, or one anew that there is.
         """
-        if self._ground is not None and event.robot_joins is not None:
-            self._ground.take_in(event.robot_joins)
         if event.robot_joins is not None or event.robot_moved is not None:
             self._executor.require_room(event)
+            if self._ground is not None and event.robot_joins is not None:
+                self._ground.take_in(event.robot_joins)
             self._take_event(event)  # the executor asks for its port, and where it is
             self._executor.report(event)
         else:
