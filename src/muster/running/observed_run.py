@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, TypeVar
 from muster.mission.errors import ParameterError
 from muster.mission.records import record
 from muster.mission.value_types import Fault, shown
+from muster.mission.yaml_writer import YAML_SUFFIXES
 from muster.running.run_request import OPEN_FLEET, RunRequest
 
 if TYPE_CHECKING:
@@ -31,9 +32,6 @@ R = TypeVar("R")
 A = TypeVar("A")
 B = TypeVar("B")
 C = TypeVar("C")
-
-MAP_SUFFIXES = (".yaml", ".yml")
-"""Suffixes of files of maps in the form of ROS."""
 
 
 def files_of_map(file: Path) -> tuple[Path, Path, Path]:
@@ -91,8 +89,8 @@ class ObservedRun(RunRequest):
         yield from super().cross_check(values)
         if values["save_map"] is not None and not values["unknown"]:
             yield Fault(("save_map",), shown(str(values["save_map"])), "it together with unknown")
-        elif values["save_map"] is not None and Path(values["save_map"]).suffix not in MAP_SUFFIXES:
-            yield Fault(("save_map",), shown(str(values["save_map"])), f"a file ({' or '.join(MAP_SUFFIXES)})")
+        elif values["save_map"] is not None and Path(values["save_map"]).suffix not in YAML_SUFFIXES:
+            yield Fault(("save_map",), shown(str(values["save_map"])), f"a file ({' or '.join(YAML_SUFFIXES)})")
 
     def require_place_of_map(self) -> None:
         """Raise `ParameterError` if the folder of the map that is to be saved does not exist."""

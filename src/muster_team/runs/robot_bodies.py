@@ -51,6 +51,8 @@ _MOST_STEP_S = 0.5
 _KEPT = 1200
 """Places of each robot that are kept, one a step, for what it tells late: those of a minute of real time."""
 
+_Place = tuple[float, tuple[float, float]]  # a time of the mission, and where a robot truly was
+
 MOST_SPEED = _MOST_STEP_S / _STEP_S
 """The largest speed-up over real time."""
 
@@ -72,9 +74,7 @@ class RobotBodies:
     ) -> None:
         self._mission, self._world, self._setup, self._log, self.ground = mission, world, setup, log, ground
         self.true_places = TruePlaces(mission, world, robots, self._tag_of, self._place_at)
-        self._places: dict[
-            str, deque[tuple[float, tuple[float, float]]]
-        ] = {}  # of each robot when it was sent its state
+        self._places: dict[str, deque[_Place]] = {}  # of each robot when it was sent its state
         self._telemetry_source = robots
         self._method = method_named(setup.method)
         self._future_events = sorted(mission.events, key=lambda event: event.at_s)
