@@ -65,7 +65,7 @@ _MOST_SECONDS = 1e6
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw performance profiles (.png, .svg, .pdf).")
 @format_option
 @quiet_option
-def command(
+def command(  # noqa: PLR0913  the options of a verb
     more: tuple[str, ...],
     allocators: tuple[str, ...],
     missions: tuple[str, ...],

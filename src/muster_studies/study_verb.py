@@ -49,7 +49,7 @@ output_option = click.option(
     "--figures", metavar="N,N", help="With --plot: draw only these figures, such as 3.6,A.1, or all; make no tables."
 )
 @quiet_option
-def command(
+def command(  # noqa: PLR0913  the options of a verb
     name: str | None,
     list_studies: bool,
     tables: str | None,

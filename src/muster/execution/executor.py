@@ -103,7 +103,7 @@ class Executor:
         if the plan names robots or tasks that the mission does not have, or a robot has no port.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913  the parts of a run, each by its name
         self,
         mission: Mission,
         plan: Plan,

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from muster.verification import Verdict
 
 
-def solve(
+def solve(  # noqa: PLR0913  options of planning beside any parameter of the allocator
     mission: Mission,
     allocator: str | Allocator | AllocatingFunction = DEFAULT_ALLOCATOR,
     time_limit: float | None = None,

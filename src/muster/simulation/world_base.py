@@ -116,7 +116,7 @@ class WorldBase(SimulatedWorld, ABC):
     _clearance_m = 0.0
     """The gap that the right of way leaves between robots that follow their velocities less exactly."""
 
-    def __init__(
+    def __init__(  # noqa: PLR0913  what makers of worlds are called with
         self,
         mission: Mission,
         *,

@@ -45,7 +45,7 @@ _WIDEST = 48
     help="What is said of the files: lines, or, beside -o, JSON with the ledger of all their elements.",
 )
 @quiet_option
-def command(
+def command(  # noqa: PLR0913  the options of a verb
     files: tuple[str, ...],
     output: Path | None,
     robots: Path | None,

@@ -75,7 +75,7 @@ def _key_option(name: str, make: Callable[[Path], None], text: str) -> Callable[
 @format_option
 @result_options
 @quiet_option
-def command(
+def command(  # noqa: PLR0913  the options of a verb
     mission: MissionFile,
     how: Mapping[str, Any],
     objective: str | None,

@@ -90,7 +90,7 @@ _FILE = click.Path(path_type=File)
 @format_option
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the path on the map (.png, .svg, .pdf).")
 @quiet_option
-def command(
+def command(  # noqa: PLR0913  the options of a verb
     mission: MissionFile,
     start: str | None,
     goal: str | None,

@@ -47,7 +47,7 @@ _OVERRUN, _OVERRUN_S = 0.1, 0.2  # of a time limit, and seconds, about which not
 @click.option("--gantt", type=_FILE, metavar="FILE", help="Draw the time chart (.png, .svg, .pdf).")
 @quiet_option
 @server_option(ray="a server uses no cluster")
-def command(
+def command(  # noqa: PLR0913  the options of a verb
     backend: Backend,
     mission: MissionFile,
     options: PlanningOptions,
