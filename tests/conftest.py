@@ -61,6 +61,9 @@ def pytest_collection_modifyitems(config, items):
         Path(config.getoption("functions")).write_text("\n".join(names) + "\n", encoding="utf-8")
     if config.getoption("shuffle") is not None:
         shuffle(items, config.getoption("shuffle"))
+    for item in items:  # what the tests of a file share is made by one process
+        if not item.get_closest_marker("xdist_group"):
+            item.add_marker(pytest.mark.xdist_group(item.nodeid.partition("::")[0]))
 
 
 LOGGERS = [logging.getLogger(name) for name in (None, "muster", "muster_robots")]

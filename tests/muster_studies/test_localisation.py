@@ -9,23 +9,22 @@ pytest.importorskip("scipy")
 pytestmark = pytest.mark.long
 
 
-@pytest.fixture(scope="module")
-def tables():
-    report = study_named("localisation").run(Effort(quick=True, seeds=1, tables=("tracking", "global", "team")))
-    return {table.number: table.records() for table in report.tables}
+def table(number):
+    (made,) = study_named("localisation").run(Effort(quick=True, seeds=1, tables=(number,))).tables
+    return made.records()
 
 
-def test_a_map_keeps_the_error_bounded_and_scans_are_better_than_wheels(tables):
-    odometry, scans, particles = tables["tracking"]
+def test_a_map_keeps_the_error_bounded_and_scans_are_better_than_wheels():
+    odometry, scans, particles = table("tracking")
     assert max(particles["mean error m"], scans["mean error m"]) < odometry["mean error m"]
     assert particles["greatest m"] < 0.5
 
 
-def test_a_robot_finds_out_where_it_is(tables):
-    (row,) = tables["global"]
+def test_a_robot_finds_out_where_it_is():
+    (row,) = table("global")
     assert row["found"] == row["runs"] == 1
 
 
-def test_a_teammate_helps(tables):
-    alone, together = tables["team"]
+def test_a_teammate_helps():
+    alone, together = table("team")
     assert together["mean error m"] < alone["mean error m"]
