@@ -30,6 +30,7 @@ from muster.motion.map_world import body_of
 from muster.motion.noise import CALM, Wind
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.simulation.lasers import laser_height_m
+from muster.simulation.port import SimulatedPort
 from muster.simulation.world_base import FLIGHT_M, Event, WorldBase
 from muster_physics.bodies import ACCELERATION_MPS2, BodyKind, RobotBody, robot_body
 from muster_physics.buildings import Heights
@@ -178,7 +179,7 @@ class PhysicsWorld(WorldBase):
         met = self._rays.lengths(number, place, beams, scanner.reach_m)
         return np.minimum(met, scanner.ranges((x, y, heading), discs=cylinders))
 
-    def _drained_by(self, robot: Robot, number: int) -> Callable[[], float]:
+    def _drained_by(self, robot: Robot, number: int, port: SimulatedPort) -> Callable[[], float]:
         """By energy: that of rotors and wheels, and what robots on the ground draw all the time."""
         supply, begin_s = power_supply(self._body(robot)), self.time_s
         return lambda: supply.drained(float(self.simulated.energy_j[number]), self.time_s - begin_s)

@@ -48,11 +48,12 @@ from muster.mission.system.garbage import collector_paused
 from muster.mission.yaml_writer import plain
 from muster.motion import actions
 from muster.motion.port import RobotPort
-from muster.state import ExecutionEvent, MissionState, OtherEvent, words
+from muster.state import ExecutionEvent, MissionState, OtherEvent
 from muster.state.mission_state import AT_MOST_ONCE
 from muster.state.quantiles import Quantiles
 from muster.state.robot_events import RobotFails, RobotsFree, RobotSilent, RobotStuck, RobotSuspended, WayClosed
 from muster.state.run_events import IMPROVED, EventRefused, MissionEnded, PlanAdopted, Replanned, Resumed
+from muster.state.station_events import EMPTY
 from muster.state.task_events import DoneElsewhere, Lost, NewTask, TaskRefused, WorkBrokenOff
 
 _ABSENT = (RobotSilent.kind, RobotSuspended.kind)
@@ -421,7 +422,7 @@ class Executor:
     def _look_at_energy(self) -> None:
         """Who is empty fails; who runs low is planned again."""
         for state in list(self._energy.empty()):
-            self._changes.exclude(state, RobotFails, self.now_s, words.EMPTY)
+            self._changes.exclude(state, RobotFails, self.now_s, EMPTY)
         self._energy.look(self.now_s)
 
     def _follow_script(self) -> None:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Self, TypeVar
+from typing import Self, TypedDict, TypeVar
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Robot
@@ -19,6 +19,18 @@ ALL = "all"
 ByRobot = Mapping[str, float]
 """A number by robot, or for `ALL`."""
 NONE: ByRobot = MappingProxyType({})
+
+
+class GivenEnergy(TypedDict, total=False):
+    """What makers of worlds are told of the energy of robots, by id or for `all`."""
+
+    batteries: ByRobot
+    """Shares of full batteries with which robots begin; else as the mission says. Who has none by either reports no
+    charge. A robot whose battery, given by the mission, is empty stops; one that recovers has a full one again."""
+    drain: ByRobot
+    """How many times as fast as by usage batteries drain."""
+
+
 _RANGES: Mapping[str, tuple[str, Callable[[float], bool]]] = {
     "battery": ("a share from 0 to 1", lambda share: 0 <= share <= 1),
     "drain": ("a number above 0", lambda factor: 0 < factor < math.inf),

@@ -11,7 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from muster.mission.errors import ParameterError
 from muster.mission.mission_parts import positions
 from muster.mission.model import Mission, Robot
 from muster.mission.texts.near_matches import did_you_mean
-from muster.model.energy import Energy
 from muster.motion.avoidance_names import AUTO, method_for
 from muster.motion.frames import rotation
 from muster.motion.grid import Floats
@@ -33,11 +32,12 @@ from muster.motion.order_trajectory import TrajectoryMaker
 from muster.motion.paths.robot_paths import RobotPaths
 from muster.perception.laser import NO_DISCS, Scanner
 from muster.perception.sphere_scanner import Slab, SphereScan, SphereScanner
-from muster.simulation.energy import NONE, ByRobot, SimulatedEnergy, capacity_in_usage, of_robot, require_by_robot
-from muster.simulation.port import Serving, SimulatedPort
-from muster.simulation.station_service import LOOK_S, WorldStations
+from muster.simulation.energy import GivenEnergy
+from muster.simulation.port import SimulatedPort
+from muster.simulation.station_service import LOOK_S
 from muster.simulation.walls import faces_and_slabs, things_in_air
 from muster.simulation.world import Contact, Observer, SimulatedWorld, WaypointPassed, standing
+from muster.simulation.world_energy import WorldEnergy
 
 NEIGHBOURS = 10
 FLIGHT_M = 1.5
@@ -60,9 +60,6 @@ _SLICE = 10_000
 """Steps between checks for Ctrl-C."""
 _LOOKS_EVERY_M = 0.05
 """Of the way on which a robot comes to a stand: so near to each other are the places that may hold a door open."""
-
-_NOTHING = np.zeros((0, 2))
-_STILL = 1e-6  # metres, or radians, that a robot may move in a step and stand
 
 
 class WorldBase(SimulatedWorld, ABC):
@@ -92,16 +89,12 @@ class WorldBase(SimulatedWorld, ABC):
         lookahead of avoidance.
     arrival_m
         the distance from a way point at which a robot that cannot get nearer has arrived; undisturbed ones go to 1 mm.
-    batteries
-        shares of full batteries with which robots begin, by id or for `all`; else as the mission says. Who has none by
-        either reports no charge. A robot whose battery, given by the mission, is empty stops; one that recovers has a
-        full one again.
-    drain
-        how many times as fast as by usage batteries drain, by id or for `all`.
     observer, observe_s
         called at the beginning and then at each step, or at most this often; costs time.
     snapshot
         of the world that this one continues, with the same robots in the same order; see `snapshot`.
+    energy
+        see `GivenEnergy`.
 
     Raises
     ------
@@ -116,7 +109,7 @@ class WorldBase(SimulatedWorld, ABC):
     _clearance_m = 0.0
     """The gap that the right of way leaves between robots that follow their velocities less exactly."""
 
-    def __init__(  # noqa: PLR0913  what makers of worlds are called with
+    def __init__(
         self,
         mission: Mission,
         *,
@@ -127,11 +120,10 @@ class WorldBase(SimulatedWorld, ABC):
         law: str = "profile",
         horizon_s: float = 2.0,
         arrival_m: float = 0.02,
-        batteries: ByRobot = NONE,
-        drain: ByRobot = NONE,
         observer: Observer | None = None,
         observe_s: float = 0.0,
         snapshot: Mapping[str, Any] | None = None,
+        **energy: Unpack[GivenEnergy],
     ) -> None:
         require_law(law)
         _require(seed, dt_s=dt_s, horizon_s=horizon_s, arrival_m=arrival_m)
@@ -163,15 +155,8 @@ class WorldBase(SimulatedWorld, ABC):
             seed=seed,
         )
         if snapshot is not None:
-            batteries = {**batteries, **snapshot["charges"]}
             self._crowd.resume(math.ceil(snapshot["time_s"] / dt_s - 1e-6), [])
-        for what, given in (("battery", batteries), ("drain", drain)):
-            require_by_robot(what, given, [robot.id for robot in mission.all_robots])
-        self._batteries, self._drain = batteries, drain
-        self._stations = WorldStations.of(mission.stations)
-        self._moving_s: dict[str, float] = {}  # of robots with a battery of the mission
-        self._empty: set[str] = set()
-        self._in_time = mission.rules.usage == "time"
+        self._energy = WorldEnergy(mission, self._crowd, self._drained_by, snapshot, **energy)
         self._walls: dict[tuple[Body, frozenset[str]], int] = {}
         self._faces: dict[tuple[Body, frozenset[str]], Faces] = {}
         self._things: Faces | None = None
@@ -209,7 +194,7 @@ class WorldBase(SimulatedWorld, ABC):
 
     def advance(self, until_s: float) -> tuple[WaypointPassed, ...]:
         stride = self._observed_steps if self._observer is not None else _SLICE
-        if self._moving_s:
+        if self._energy.limited:
             stride = min(stride, max(1, round(LOOK_S / self._dt_s)))
         while self.time_s + self._dt_s <= until_s + 1e-6 * self._dt_s:
             target = min(until_s, (self._crowd.steps // stride + 1) * stride * self._dt_s)
@@ -247,23 +232,11 @@ class WorldBase(SimulatedWorld, ABC):
         trajectories = self._trajectories_of(robot)
         port = SimulatedPort(robot, number, self._crowd, self._noise, self._seed, trajectories, self._name_of)
         self._ports[robot.id] = port
-        at_start = of_robot(self._batteries, robot.id, None if robot.battery is None else robot.battery.at_start)
-        if at_start is not None:
-            self._put_in(port, robot, at_start)
+        self._energy.begin(robot, number, port)
         return port
 
-    def _put_in(self, port: SimulatedPort, robot: Robot, at_start: float) -> None:
-        """Give a robot its battery: of the mission, drained by usage; else as the world has it."""
-        energy, drain = Energy.of(robot), of_robot(self._drain, robot.id, 1.0)
-        if energy is None:
-            capacity, used = 1.0, self._drained_by(robot, self._number(robot.id))
-        else:
-            self._moving_s[robot.id] = 0.0
-            capacity, used = energy.capacity, self._usage_of(robot)
-        port.energy = SimulatedEnergy(capacity, at_start * capacity, used, drain, counted=0.0)
-
     def snapshot(self) -> dict[str, Any]:
-        """Return plain data from which a world is made whose bodies stand, move and are charged as they do here.
+        """Return plain data from which a world is made whose bodies stand, move and hold energy as they do here.
 
         Faults of robots, contacts and the clock are in it. What is random begins anew by the seed, and so does what a
         station has given to a robot that it serves.
@@ -271,12 +244,11 @@ class WorldBase(SimulatedWorld, ABC):
         poses, motions = np.column_stack([self._crowd.positions(), self.headings]), self._crowd.motions()
         for robot, place in self._removed.items():
             poses[self._number(robot), :3] = place
-        energies = {name: port.energy for name, port in self._ports.items()}
         return {
             "time_s": self.time_s,
             "robots": dict(zip(self._numbers, np.hstack([poses, motions]).tolist(), strict=True)),
             "distances_m": dict(self.distances_m),
-            "charges": {name: energy.look().share for name, energy in energies.items() if energy is not None},
+            **self._energy.snapshot(),
             "failed": sorted(self._failed),
             "removed": sorted(self._removed),
             "muted": [name for name, port in self._ports.items() if port.muted],
@@ -323,10 +295,7 @@ class WorldBase(SimulatedWorld, ABC):
         self._crowd.recover(self._number(robot))
         self._failed.discard(robot)
         self._ports[robot].unmute()
-        energy = self._ports[robot].energy
-        if robot in self._empty and energy is not None:
-            self._empty.discard(robot)
-            energy.add(math.inf)
+        self._energy.recover(robot)
 
     def silence(self, robot: str) -> None:
         self._number(robot)
@@ -460,40 +429,9 @@ class WorldBase(SimulatedWorld, ABC):
     def _go_on(self, until_s: float) -> list[Event]:
         """Step until a time, or until a way point is passed."""
 
-    def _drained_by(self, robot: Robot, number: int) -> Callable[[], float]:
-        """What tells the share of a full battery that a robot has drained: here its usage, of its work capacity.
-
-        A stop costs what it costs where the mission does not say how long it takes: its seconds times the speed.
-        """
-        port, capacity = self._ports[robot.id], capacity_in_usage(robot)
-        if self._in_time:
-            return lambda: (self._crowd.travelled()[number] / robot.speed_mps + port.held_s) / capacity
-        return lambda: (self._crowd.travelled()[number] + port.stay_usage) / capacity
-
-    def _usage_of(self, robot: Robot) -> Callable[[], float]:
-        """What tells a robot's usage, in the mission's unit: way and work, or the time of both; waiting is none."""
-        port, number = self._ports[robot.id], self._number(robot.id)
-        if self._in_time:
-            return lambda: self._moving_s[robot.id] + port.held_s
-        return lambda: float(self._crowd.travelled()[number]) + port.stay_usage
-
-    def _moved(self) -> Floats:
-        """(m, 2) metres that robots have travelled, and their headings."""
-        if not self._moving_s:
-            return _NOTHING
-        return np.column_stack([self._crowd.travelled(), self._crowd.headings()])
-
-    def _look_at_energy(self, served: Mapping[str, Serving | None], moved: Floats, seconds: float) -> None:
-        """Robots that move use energy, those that were served get some; who is empty stops for good."""
-        largest_m = max(robot.radius_m for robot in self._robots)
-        for robot in self._moving_s:
-            port = self._ports[robot]
-            if np.abs(moved[self._number(robot)]).max() > _STILL:
-                self._moving_s[robot] += seconds
-            self._stations.serve(port, served[robot], seconds, largest_m)
-            if port.energy is not None and port.energy.look().level <= 0.0 and robot not in self._empty:
-                self._empty.add(robot)
-                self._crowd.fail(self._number(robot))
+    def _drained_by(self, robot: Robot, number: int, port: SimulatedPort) -> Callable[[], float]:
+        """What tells the share of a full store that a robot of the mission without one has drained: here by usage."""
+        return self._energy.drained_by_usage(robot, number, port)
 
     def _limits(self, robot: Robot) -> Limits:
         return limits_of(robot)
@@ -522,12 +460,12 @@ class WorldBase(SimulatedWorld, ABC):
             self._turn_doors()
         ids = list(self._numbers)
         passed = []
-        begin_s, served = self.time_s, {robot: self._ports[robot].serving for robot in self._moving_s}
-        before = self._moved()
+        begin_s, before = self.time_s, self._energy.look()
         for time, number, order, count, idle in self._go_on(until_s):
             label = self._ports[ids[number]].label(order, count)
             passed.append(WaypointPassed(time, ids[number], order, count, label, idle))
-        self._look_at_energy(served, self._moved() - before, self.time_s - begin_s)
+        for number in self._energy.emptied_since(before, self.time_s - begin_s):
+            self._crowd.fail(number)
         if self._crowd.steps % self._observed_steps == 0:
             self._observe()
         return tuple(passed)

@@ -6,12 +6,59 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Self
 
+from muster.mission.stations import station_sign
 from muster.state import words
 from muster.state.event import ExecutionEvent, happens
 from muster.state.goods_ledger import tied_goods
 
 if TYPE_CHECKING:
     from muster.state.mission_state import MissionState
+
+
+EMPTY = "its battery is empty"
+"""Why a robot takes no part any more that has no energy left."""
+
+
+def energy_low(data: words.Data) -> str:
+    return f"{data.get('robot', '?')} has too little in its battery for what lies ahead" + _charge(data)
+
+
+def goes_to_station(data: words.Data) -> str:
+    return f"{data.get('robot')} goes to {_station(data)}{_charge(data)}"
+
+
+def arrives_at_station(data: words.Data) -> str:
+    return f"{data.get('robot')} is at {_station(data)}{_charge(data)}"
+
+
+def waits_for_slot(data: words.Data) -> str:
+    """`r_1 waits for a slot at [dock]: r_0 is served there`."""
+    served = [str(robot) for robot in data.get("served", ())]
+    line = f"{data.get('robot')} waits for a slot at {_station(data)}"
+    return f"{line}: {', '.join(served)} {'is' if len(served) == 1 else 'are'} served there" if served else line
+
+
+def service_begins(data: words.Data) -> str:
+    """`r_0 is served at [dock]: charge, 58.5 s (48 % in its battery)`."""
+    services, takes_s = ", ".join(data.get("services", ())), data.get("takes_s", 0.0)
+    return f"{data.get('robot')} is served at {_station(data)}: {services}, {takes_s:.1f} s{_charge(data)}"
+
+
+def service_ends(data: words.Data) -> str:
+    """`r_0 has been served at [dock]: unloaded kg 3 (100 % in its battery)`."""
+    gone = data.get("unloaded") or {}
+    told = ", ".join(f"{name} {words.amount(much)}".strip() for name, much in gone.items())
+    line = f"{data.get('robot')} has been served at {_station(data)}"
+    return f"{line}{f': unloaded {told}' if told else ''}{_charge(data)}"
+
+
+def _station(data: words.Data) -> str:
+    return station_sign(str(data.get("station")))
+
+
+def _charge(data: words.Data) -> str:
+    share = data.get("charge")
+    return f" ({100 * share:.0f} % in its battery)" if isinstance(share, int | float) else ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,7 +79,7 @@ class AtStation(ExecutionEvent):
         state.note_used(self.robot, self.used, self.charge)
 
 
-@happens("goes_to_station", words.goes_to_station)
+@happens("goes_to_station", goes_to_station)
 class GoesToStation(AtStation):
     """A robot sets out for a station."""
 
@@ -42,19 +89,19 @@ class GoesToStation(AtStation):
             robot.leave(self.time_s)
 
 
-@happens("arrives_at_station", words.arrives_at_station)
+@happens("arrives_at_station", arrives_at_station)
 class ArrivesAtStation(AtStation):
     """A robot is at a station."""
 
 
-@happens("waits_for_slot", words.waits_for_slot)
+@happens("waits_for_slot", waits_for_slot)
 class WaitsForSlot(AtStation):
     """A robot waits until a station has a slot for it."""
 
     served: tuple[str, ...] = ()
 
 
-@happens("service_begins", words.service_begins)
+@happens("service_begins", service_begins)
 class ServiceBegins(AtStation):
     """A robot is served, for so long."""
 
@@ -62,7 +109,7 @@ class ServiceBegins(AtStation):
     takes_s: float
 
 
-@happens("service_ends", words.service_ends)
+@happens("service_ends", service_ends)
 class ServiceEnds(AtStation):
     """A robot has been served; `unloaded` is by commodity."""
 
@@ -77,7 +124,7 @@ class ServiceEnds(AtStation):
             state.goods.unload(self.robot, tied_goods(state.ledger))
 
 
-@happens("energy_low", words.energy_low)
+@happens("energy_low", energy_low)
 class EnergyLow(ExecutionEvent):
     """A battery does not last for what lies ahead; `charge` is a share, `missing` in the mission's unit."""
 

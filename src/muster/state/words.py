@@ -10,7 +10,6 @@ from collections import defaultdict
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from muster.mission.stations import station_sign
 from muster.mission.texts.counting import counted
 from muster.state.reasons import is_no_loss, was_cancelled
 
@@ -167,55 +166,6 @@ def goes_on(data: Data) -> str:
 def final_states(data: Data) -> str:
     """`at the end: r_0: hovers, armed; at (9.54, 0.00, 4.77)`."""
     return f"at the end: {' | '.join(str(one.get('words')) for one in data.get('robots', ()))}"
-
-
-EMPTY = "its battery is empty"
-"""Why a robot takes no part any more that has no energy left."""
-
-
-def energy_low(data: Data) -> str:
-    return _filled("{robot} has too little in its battery for what lies ahead", data) + _charge(data)
-
-
-# Stations
-
-
-def goes_to_station(data: Data) -> str:
-    return f"{data.get('robot')} goes to {_station(data)}{_charge(data)}"
-
-
-def arrives_at_station(data: Data) -> str:
-    return f"{data.get('robot')} is at {_station(data)}{_charge(data)}"
-
-
-def waits_for_slot(data: Data) -> str:
-    """`r_1 waits for a slot at [dock]: r_0 is served there`."""
-    served = [str(robot) for robot in data.get("served", ())]
-    line = f"{data.get('robot')} waits for a slot at {_station(data)}"
-    return f"{line}: {', '.join(served)} {'is' if len(served) == 1 else 'are'} served there" if served else line
-
-
-def service_begins(data: Data) -> str:
-    """`r_0 is served at [dock]: charge, 58.5 s (48 % in its battery)`."""
-    services, takes_s = ", ".join(data.get("services", ())), data.get("takes_s", 0.0)
-    return f"{data.get('robot')} is served at {_station(data)}: {services}, {takes_s:.1f} s{_charge(data)}"
-
-
-def service_ends(data: Data) -> str:
-    """`r_0 has been served at [dock]: unloaded kg 3 (100 % in its battery)`."""
-    gone = data.get("unloaded") or {}
-    told = ", ".join(f"{name} {amount(much)}".strip() for name, much in gone.items())
-    line = f"{data.get('robot')} has been served at {_station(data)}"
-    return f"{line}{f': unloaded {told}' if told else ''}{_charge(data)}"
-
-
-def _station(data: Data) -> str:
-    return station_sign(str(data.get("station")))
-
-
-def _charge(data: Data) -> str:
-    share = data.get("charge")
-    return f" ({100 * share:.0f} % in its battery)" if isinstance(share, int | float) else ""
 
 
 # The run
