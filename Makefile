@@ -9,7 +9,7 @@ DEMO_MISSION ?= 31T-6R50
 
 unexport PYTHONDONTWRITEBYTECODE  # else each of the many processes that tests start compiles all that it imports
 
-.PHONY: house standing demo test test-all test-alone quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-byzantine campaign-mutated campaign-model campaign-goods campaign-server campaign-faults fault-flights campaign-api campaign-coverage campaign-kills network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
+.PHONY: house standing demo test test-all test-alone quick turn flakes ci docs docs-check docs-check-long figures campaign campaign-times campaign-carry campaign-mixed campaign-state campaign-auction campaign-byzantine campaign-mutated campaign-model campaign-goods campaign-server campaign-faults fault-flights campaign-api campaign-coverage campaign-kills campaign-narrow network-figures disturbances disturbances-timed disturbances-traffic help check format stub man sanitize study bench clean prerequisites test-packages
 
 demo: $(VENV)/installed
 	@mkdir -p demo
@@ -95,6 +95,9 @@ fault-flights: $(VENV)/developed
 campaign-kills: $(VENV)/developed
 	$(BIN)/python -m tests.muster_robots.kills $(CAMPAIGN_FLAGS)
 
+campaign-narrow: $(VENV)/developed
+	$(BIN)/python -m tests.running.narrow $(or $(CAMPAIGN_FLAGS),50)
+
 campaign-coverage: $(VENV)/developed
 	MUSTER_AREAS=$(or $(CAMPAIGN_FLAGS),200) $(BIN)/python -m pytest tests/motion/areas/test_coverage_path.py
 
@@ -147,6 +150,7 @@ help:
 	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"
 	@echo "make campaign-faults  kill a server of mission control 100 times while its database is away; no order is lost"
 	@echo "make fault-flights  fly 63 simulated flights of drones with faults that come and go"
+	@echo "make campaign-narrow  carry out 50 scenes of 2 to 200 robots in narrow places; nobody touches another"
 	@echo "make campaign-coverage  cover 200 random areas with holes; Shapely says whether every place is seen"
 	@echo "make campaign-api  many more requests, made from the description of mission control's API, than the tests make"
 	@echo "make network-figures  time robots in network namespaces, through loss and a cut (root; NETWORK_FLAGS='--robots 20')"

@@ -27,6 +27,7 @@ DIGESTS = {
     "warehouse": "ecb09b5f2a39",
     "drones": "6e62857b9a20",
     "moving": "1f538ab601c0",
+    "narrow": "0f5416c088ab",
     "mixed": "270473f367f4",
 }
 """Of the files of seed 7. Where one changes, whoever has results on the family can no longer make its missions."""
@@ -47,6 +48,7 @@ SMALLEST = {
     "warehouse": {"robots": 1, "tasks": 1, "aisles": 1, "length_m": 2},
     "drones": {"robots": 1, "tasks": 1, "pads": 1},
     "moving": {"kinds": "air"},
+    "narrow": {"robots": 2, "place": "circle"},
     "mixed": {"robots": 1, "tasks": 1},
 }
 

@@ -2,10 +2,10 @@
 
 import pytest
 
+from muster.generation.narrow import DIFFERENTIAL, KINEMATICS, RADIUS_M, SHIFT_M, SPEED_MPS
 from muster.mission.mission_parts import positions
-from muster_studies.jams.scenes import DIFFERENTIAL, KINEMATICS, RADIUS_M, SCENES, SHIFT_M, SPEED_MPS
 from muster_studies.jams.space_time import SIDE_M
-from muster_studies.jams.study import JAMS, METHODS, RESERVE, SPACE_TIME, Job, outcome_of
+from muster_studies.jams.study import JAMS, METHODS, RESERVE, SCENES, SPACE_TIME, Job, outcome_of
 
 
 @pytest.mark.parametrize("name", SCENES)

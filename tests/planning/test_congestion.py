@@ -6,16 +6,16 @@ import pytest
 
 import muster
 from muster.allocation.stop import Stop
+from muster.generation import narrow
 from muster.planning import spreading
 from muster.planning.congestion import SharedPassages
 from muster.planning.request import Request
 from muster.planning.solving import answer
-from muster_studies.jams import scenes
 
 
 @pytest.fixture(scope="module")
 def mission():
-    return scenes.dead_ends("differential-drive", 1, 12)
+    return narrow.dead_ends("differential-drive", 1, 12)
 
 
 def planned(mission, **asked):

@@ -9,11 +9,11 @@ import pytest
 import muster
 from muster.execution.fleet import Failure
 from muster.execution.record import NoObserver
+from muster.generation import narrow
 from muster.mission.model import Event, Mission, Robot, Task
 from muster.report.record import read_record
 from muster.running.live import with_reported_starts
 from muster.simulation import KinematicWorld
-from muster_studies.jams import scenes
 
 
 class WorldAsFleet:
@@ -204,7 +204,7 @@ def test_the_clock_of_a_mission_begins_with_it(tmp_path):
 @pytest.mark.long
 def test_a_fleet_passes_a_door_in_the_order_of_one_plan():
     """The robots' own avoidance is the local layer: nobody touches, and all get through."""
-    there = scenes.one_way_door("differential-drive", 0, 8)
+    there = narrow.one_way_door("differential-drive", 0, 8)
     fleet = WorldAsFleet(there)
     report = flown(there, fleet)
     assert len(report.tasks_done) == len(there.tasks)

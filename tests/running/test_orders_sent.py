@@ -6,7 +6,6 @@ from tests.running.test_live import WorldAsFleet, mission
 import muster
 from muster.mission.model import Event, Task
 from muster.motion.port import TranslatedPort
-from muster_studies.jams import scenes
 
 
 class CountedPort(TranslatedPort):
@@ -70,7 +69,7 @@ def test_a_fleet_on_duty_without_tasks_gets_no_orders():
 @pytest.mark.long
 @pytest.mark.parametrize(("scene", "count"), [("corridor", 4), ("one_way_door", 8), ("two_way_door", 6), ("aisles", 4)])
 def test_where_traffic_is_reserved_robots_are_sent_on_sparingly(scene, count):
-    there = getattr(scenes, scene)("differential-drive", 1, count)
+    there = getattr(narrow, scene)("differential-drive", 1, count)
     fleet = CountingFleet(there)
     report = muster.carry_out(there, muster.solve(there, "greedy"), fleet, traffic="reserve")
     assert len(report.tasks_done) == len(there.tasks)

@@ -7,18 +7,18 @@ from dataclasses import replace
 import pytest
 
 from muster import Negotiation, ParameterError, Simulation, simulate, solve
+from muster.generation import narrow
 from muster.mission.lanes import Lane, Lanes
 from muster.mission.model import Event, Map, Mission, Robot, Rules, Task, Zone
 from muster.running.free_traffic import free_s
 from muster.running.observed_run import ObservedRun
 from muster.running.traffic_choice import LOOSE_MARGIN_M, manager_for
 from muster.traffic.roadmaps.roadmap import MARGIN_M
-from muster_studies.jams import scenes
 
 
 @pytest.fixture(scope="module")
 def door():
-    return scenes.one_way_door("holonomic", 0, 3)
+    return narrow.one_way_door("holonomic", 0, 3)
 
 
 @pytest.fixture(scope="module")

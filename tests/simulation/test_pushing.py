@@ -3,11 +3,11 @@
 import pytest
 
 from muster import Simulation, solve
-from muster_studies.jams import scenes
+from muster.generation import narrow
 
 
 @pytest.mark.long(keep=1)
-@pytest.mark.parametrize(("scene", "seed"), [(scenes.dead_ends, 0), (scenes.one_way_door, 3)])
+@pytest.mark.parametrize(("scene", "seed"), [(narrow.dead_ends, 0), (narrow.one_way_door, 3)])
 def test_who_pushes_another_and_turns_does_not_touch_it(scene, seed):
     mission = scene("differential-drive", seed)
     simulation = Simulation(mission, solve(mission, "greedy"), avoidance="hrvo", traffic="free", seed=seed)

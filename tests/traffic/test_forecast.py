@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 
 from muster import Simulation, solve
+from muster.generation import narrow
 from muster.traffic.journeys.forecast import Forecast, RobotForecast, forecast
 from muster.traffic.mission_roadmap import MissionRoadmap
-from muster_studies.jams import scenes
 
 
 def forecast_of(mission, plan):
@@ -19,7 +19,7 @@ def forecast_of(mission, plan):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("scene", [scenes.aisles, scenes.dead_ends])
+@pytest.mark.parametrize("scene", [narrow.aisles, narrow.dead_ends])
 def test_runs_take_as_long_as_forecast(scene):
     mission = scene("differential-drive", 1, 6)
     plan = solve(mission, "greedy")
@@ -34,7 +34,7 @@ def test_runs_take_as_long_as_forecast(scene):
 
 @pytest.mark.long
 def test_robots_without_tasks_stay_where_they_do_not_hinder():
-    mission = scenes.one_way_door("holonomic", 0, 4)
+    mission = narrow.one_way_door("holonomic", 0, 4)
     plan = solve(mission, "greedy")
     idle = replace(plan, routes=tuple(replace(route, tasks=(), stops=()) for route in plan.routes))
     assert [one.with_traffic_s for one in forecast_of(mission, idle).robots] == [0.0] * 4

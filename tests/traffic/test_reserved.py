@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from muster import ParameterError, Simulation, solve
-from muster_studies.jams import scenes
+from muster.generation import narrow
 
 COUNTS = {"one_way_door": 8, "two_way_door": 6, "corridor": 8, "aisles": 4, "dead_ends": 4}
 KINEMATICS = ("holonomic", "differential-drive", "holonomic", "differential-drive", "differential-drive")
@@ -14,7 +14,7 @@ KINEMATICS = ("holonomic", "differential-drive", "holonomic", "differential-driv
 @pytest.mark.long
 @pytest.mark.parametrize(("scene", "kinematics"), list(zip(COUNTS, KINEMATICS, strict=True)))
 def test_all_get_through(scene, kinematics):
-    mission = getattr(scenes, scene)(kinematics, 1, COUNTS[scene])
+    mission = getattr(narrow, scene)(kinematics, 1, COUNTS[scene])
     simulation = Simulation(mission, solve(mission, "greedy"), traffic="reserve")
     while not simulation.done:
         simulation.advance(simulation.time_s + 10.0)
@@ -27,7 +27,7 @@ def test_all_get_through(scene, kinematics):
 @pytest.mark.long
 @pytest.mark.parametrize("scene", [(1, 2), pytest.param((2, 3), marks=pytest.mark.long)], ids=str)
 def test_it_is_the_same_again(scene):
-    mission = scenes.aisles("holonomic", *scene)
+    mission = narrow.aisles("holonomic", *scene)
     plan = solve(mission, "greedy")
     times = []
     for _ in range(2):
@@ -39,6 +39,6 @@ def test_it_is_the_same_again(scene):
 
 
 def test_an_unknown_manager_is_refused():
-    mission = scenes.pair("holonomic", 0)
+    mission = narrow.pair("holonomic", 0)
     with pytest.raises(ParameterError, match="\"reserv\"; expected auto or free or reserve; did you mean 'reserve'"):
         Simulation(mission, solve(mission, "greedy"), traffic="reserv")

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from muster.core import SafeIntervals, SharedWays, Traveller
+from muster.generation import narrow
 from muster.traffic.mission_roadmap import MissionRoadmap
 from muster.traffic.roadmaps.edge_conflicts import annotated
-from muster_studies.jams import scenes
 
 HOLD_S = 5.0
 
@@ -35,7 +35,7 @@ class Aisles:
     """Robots that each visit some tasks of a store of aisles, and come home."""
 
     def __init__(self, robots: int, stops: int) -> None:
-        self.mission = scenes.aisles("differential-drive", 1, robots)
+        self.mission = narrow.aisles("differential-drive", 1, robots)
         shared = MissionRoadmap.of(self.mission)
         self.roadmap = shared.roadmap
         self.search = SafeIntervals(annotated(self.roadmap), self.roadmap.holding.tolist(), self.roadmap.margin_m)

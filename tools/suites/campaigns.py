@@ -49,6 +49,7 @@ CAMPAIGNS = [
     Campaign(9, "campaign-server", 10, 50, "{seeds} --seed {first}"),
     Campaign(7, "campaign-faults", 8, 100, "{seeds} --seed {first}"),
     Campaign(5, "campaign-kills", 40, 1_000),
+    Campaign(3, "campaign-narrow", 10, 100),
     Campaign(4, "campaign-coverage", 200, 200, "{seeds}"),
     Campaign(9, "campaign-api", 20, 60, "{seeds}"),
 ]

@@ -12,12 +12,12 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
+from muster.generation.narrow import RADIUS_M, SPEED_MPS
 from muster.mission.model import Mission
 from muster.motion.map_world import World
 from muster.motion.paths import PathFinder
 from muster.traffic.reservations import Cell
 from muster.traffic.space_time import NotTogether, Parameters, together
-from muster_studies.jams.scenes import RADIUS_M, SPEED_MPS
 
 SIDE_M = 0.65
 _AROUND_M = 4.0

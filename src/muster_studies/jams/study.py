@@ -7,20 +7,32 @@ from __future__ import annotations
 
 import math
 import statistics
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 
+from muster.generation import narrow
+from muster.generation.narrow import KINEMATICS
 from muster.mission.model import Mission
 from muster.planning.solve import solve
 from muster.running.simulation import carry_out
 from muster.state import ExecutionEvent
 from muster_studies.descriptions import description
 from muster_studies.effort import Effort
-from muster_studies.jams.scenes import KINEMATICS, SCENES
 from muster_studies.jams.space_time import space_time_s
 from muster_studies.repetition import Repetition, Reproduction, one_by_one
 from muster_studies.tables import Cell, Table
 
+SCENES: Mapping[str, Callable[[str, int], Mission]] = {
+    "face to face, 2": narrow.pair,
+    "one-way door, 20": narrow.one_way_door,
+    "two-way door, 20": narrow.two_way_door,
+    "corridor, 20": narrow.corridor,
+    "aisles, 6": narrow.aisles,
+    "dead ends, 6": narrow.dead_ends,
+    "circle, 50": partial(narrow.circle, apart_m=0.81),
+    "streams, 40": narrow.streams,
+}
 METHODS = ("orca", "rvo", "hrvo")
 RESERVE, ALONE = "reserve", "none"
 """Planned traffic; and robots that drive through each other, which is a bound."""

@@ -5,10 +5,10 @@ from itertools import product
 from random import Random
 
 from muster import Mission, Robot, Rules, Task
+from muster.generation import narrow
 from muster.mission.model import Map, Zone
-from muster_studies.jams import scenes
 
-RADIUS_M = scenes.RADIUS_M
+RADIUS_M = narrow.RADIUS_M
 SKILL = "gripper"
 MOST_TASKS = 3
 """Tasks for each robot, at most."""
@@ -19,7 +19,10 @@ def mission_of(seed):
     """A mission of 4 to 12 robots, all holonomic or all differential drives."""
     random = Random(f"traffic {seed}")
     make = random.choice((*SCENES, rooms, rooms))
-    mission = make(random.choice(scenes.KINEMATICS), seed + 1, random.randint(4, 12))
+    kinematics, count = random.choice(narrow.KINEMATICS), random.randint(4, 12)
+    if make in (narrow.two_way_door, narrow.corridor):
+        count -= count % 2
+    mission = make(kinematics, seed + 1, count)
     mission = replace(mission, tasks=mission.tasks[: MOST_TASKS * len(mission.robots)])
     if random.random() < 0.5:
         mission = replace(mission, tasks=tuple(replace(task, only_robots=None) for task in mission.tasks))
@@ -48,7 +51,7 @@ def rooms(kinematics, seed, count):
     return Mission(name="rooms", robots=robots, tasks=tasks, map=Map(boundary=boundary, zones=zones), rules=rules)
 
 
-SCENES = (scenes.one_way_door, scenes.two_way_door, scenes.aisles, scenes.dead_ends, scenes.corridor)
+SCENES = (narrow.one_way_door, narrow.two_way_door, narrow.aisles, narrow.dead_ends, narrow.corridor)
 
 
 def newcomer(name, place, like):
@@ -97,14 +100,14 @@ def _box(left, low, right, high, **door):
 
 
 def _robot(name, place, kinematics, random):
-    drives = kinematics == scenes.DIFFERENTIAL
+    drives = kinematics == narrow.DIFFERENTIAL
     return Robot(
         id=name,
         position=place,
         heading_deg=random.uniform(-180, 180) if drives else 0.0,
         radius_m=RADIUS_M,
-        speed_mps=scenes.SPEED_MPS,
+        speed_mps=narrow.SPEED_MPS,
         kinematics=kinematics,
-        acceleration_mps2=scenes.ACCELERATION_MPS2 if drives else None,
-        yaw_rate_radps=scenes.YAW_RATE_RADPS if drives else None,
+        acceleration_mps2=narrow.ACCELERATION_MPS2 if drives else None,
+        yaw_rate_radps=narrow.YAW_RATE_RADPS if drives else None,
     )
