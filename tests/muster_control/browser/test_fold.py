@@ -133,7 +133,7 @@ def test_each_kind_of_event_changes_something_or_is_named_as_not_shown(page):
     assert kinds | NOT_SHOWN == set(KINDS)
 
 
-@pytest.mark.parametrize("seed", [*range(2), *(pytest.param(k, marks=pytest.mark.long) for k in range(2, 40))])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.long) for k in range(1, 40))])
 def test_both_know_the_same_after_each_event_of_a_run(both, plan, seed):  # noqa: F811
     draw = random.Random(seed)
     run = Played(site([Event(at_s=9.0, new_task=SAMPLES["new_task"][0])]), plan)

@@ -2,9 +2,10 @@
 
 from random import Random
 
+from tests.trials import Report
+
 import muster
 from muster.generation.narrow import KINEMATICS, PLACES
-from tests.trials import Report
 
 FEWEST, MOST = 2, 200
 
