@@ -4,6 +4,7 @@ import pytest
 from tests.running.test_live import WorldAsFleet, mission
 
 import muster
+from muster.generation import narrow
 from muster.mission.model import Event, Task
 from muster.motion.port import TranslatedPort
 
