@@ -93,12 +93,11 @@ def _team_size(path: Path, fields: dict[str, Any]) -> int:
 
 
 def _tasks_to_reveal(path: Path, fields: dict[str, Any], team: int) -> int:
-    value = fields.get("numTasksReveal", 1)
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_number or not 0 < value * team <= _MOST_REVEALED:
-        expected = f"a number above 0 that reveals at most {_MOST_REVEALED:,} tasks to {team} robots"
-        raise _wrong(path, None, "numTasksReveal", _shown(value), expected)
-    return math.ceil(value * team)
+    value: object = fields.get("numTasksReveal", 1)
+    if isinstance(value, int | float) and not isinstance(value, bool) and 0 < value * team <= _MOST_REVEALED:
+        return math.ceil(value * team)
+    expected = f"a number above 0 that reveals at most {_MOST_REVEALED:,} tasks to {team} robots"
+    raise _wrong(path, None, "numTasksReveal", _shown(value), expected)
 
 
 def _starts(path: Path, team: int, blocked: Bools) -> list[int]:
