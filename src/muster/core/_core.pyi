@@ -1192,7 +1192,7 @@ class LifelongErrands:
     Robots with headings on a grid that carry out tasks without end, step by step.
     """
 
-    def __init__(self, blocked: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order='C', device='cpu', writable=False)], starts: Sequence[int], tasks: Sequence[Sequence[int]], *, revealed: int, checks: int = 300000, seed: int = 0) -> None:
+    def __init__(self, blocked: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order='C', device='cpu', writable=False)], starts: Sequence[int], tasks: Sequence[Sequence[int]], *, revealed: int, checks: int = 1000000, seed: int = 0) -> None:
         """
         `blocked` is (rows, columns); a cell is row * columns + column. Robots head east at first. Raises ValueError where a cell is not free, a task has no cell, or two robots start in one cell.
         """

@@ -89,7 +89,7 @@ _FILE = click.Path(path_type=File)
     "--expansions",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Of --joint: end after N expansions; of --lifelong: N operations are checked a step.  [default: 300000]",
+    help="Of --joint: end after N expansions; of --lifelong: N operations are checked a step.  [default: 1000000]",
 )
 @click.option(
     "-o",

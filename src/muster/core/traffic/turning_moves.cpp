@@ -1,6 +1,7 @@
 #include "traffic/turning_moves.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -33,8 +34,45 @@ TurningMoves::TurningMoves(const TurningGrid& grid, const HeadingDistances& dist
 
 void TurningMoves::plan(std::span<const Aim> aims, std::span<const int> order, std::int64_t checks) {
   rank_operations(aims);
+  const Decision inherited{plans_, costs_};
+  Decision best = sample(order, checks);
+  std::int64_t least = weighted_sum();
+  for (checks -= checks_done_; checks > 0; checks -= checks_done_) {
+    take(inherited);
+    Decision other = sample(disturbed(order), checks);
+    const std::int64_t sum = weighted_sum();
+    if (sum >= least) continue;
+    least = sum;
+    best = std::move(other);
+  }
+  take(best);
+}
+
+TurningMoves::Decision TurningMoves::sample(std::span<const int> order, std::int64_t checks) {
+  checks_done_ = 0;
   inherit_by_priority(order);
-  improve(checks);
+  improve(std::min(checks, kSampleChecks));
+  return {plans_, costs_};
+}
+
+void TurningMoves::take(const Decision& decision) {
+  for (int robot = 0; robot < robots(); ++robot) lift(robot);
+  for (int robot = 0; robot < robots(); ++robot) put(robot, decision.plans[robot]);
+  costs_ = decision.costs;
+}
+
+// The same order, but for places that change by up to a tenth of all.
+std::vector<int> TurningMoves::disturbed(std::span<const int> order) {
+  std::vector<double> keys(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    keys[order[k]] = static_cast<double>(k) + 0.1 * static_cast<double>(order.size()) * random_.uniform();
+  std::vector<int> robots_by_key(order.begin(), order.end());
+  std::stable_sort(robots_by_key.begin(), robots_by_key.end(), [&](int a, int b) { return keys[a] < keys[b]; });
+  return robots_by_key;
+}
+
+std::int64_t TurningMoves::weighted_sum() const {
+  return std::inner_product(weights_.begin(), weights_.end(), costs_.begin(), std::int64_t{0});
 }
 
 void TurningMoves::advance() {
@@ -97,22 +135,20 @@ void TurningMoves::inherit_by_priority(std::span<const int> order) {
 
 void TurningMoves::improve(std::int64_t checks) {
   rank_ = kImproving;
-  while (checks > 0) {
+  for (const std::int64_t end = checks_done_ + checks; checks_done_ < end; ++checks_done_) {
     const int robot = random_.below(robots());
-    --checks;
-    if (costs_[robot] <= choices_[robot].front().cost) continue;
-    checks -= try_to_improve(robot, kImprovementChecks);
+    if (costs_[robot] > choices_[robot].front().cost) try_to_improve(robot, kImprovementChecks);
   }
 }
 
-// Gives a robot a better operation than it has, if one is found. Returns how many operations were checked.
-int TurningMoves::try_to_improve(int robot, int checks) {
+// Gives a robot a better operation than it has, if one is found.
+void TurningMoves::try_to_improve(int robot, int checks) {
   ++search_;
   checks_left_ = checks;
   const Operation before = plans_[robot];
   lift(robot);
   if (!is_found(robot, 0, 0)) put(robot, before);
-  return checks - checks_left_;
+  checks_done_ += checks - checks_left_;
 }
 
 // Finds an operation for a robot that has none. `change` is by how much those that displaced it have changed the

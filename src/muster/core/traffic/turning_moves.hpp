@@ -25,13 +25,15 @@ struct Aim {
 //   1. in an order of priority, each robot takes the best operation for which a robot in the way, one at most and of
 //      lower priority, finds another one in turn, and
 //   2. robots chosen at random do the same with any robot in the way, where the weighted sum of costs does not grow.
+// That is sampled with disturbed orders while checks of operations are left, and the least sum counts.
 class TurningMoves {
  public:
   TurningMoves(const TurningGrid& grid, const HeadingDistances& distances, std::vector<int> states, std::uint64_t seed);
 
   int robots() const { return static_cast<int>(states_.size()); }
   const std::vector<int>& states() const { return states_; }
-  // Decides operations. `order` has the robots by priority. `checks` is how many operations the second part tries.
+  // Decides operations. `order` has the robots by priority. About `checks` operations are checked; one sample is made
+  // in any case.
   void plan(std::span<const Aim> aims, std::span<const int> order, std::int64_t checks);
   // Takes the first step of all operations, and shifts them.
   void advance();
@@ -47,9 +49,20 @@ class TurningMoves {
   static constexpr int kImproving = -1;
   // Operations that are checked for one robot and those that it displaces.
   static constexpr int kPriorityChecks = 20'000, kImprovementChecks = 1'000;
-  static constexpr int kDeepest = 8;      // robots that displace one another
-  static constexpr int kMostVisits = 10;  // times that one of them is displaced
+  static constexpr std::int64_t kSampleChecks = 300'000;  // of the second part of a sample
+  static constexpr int kDeepest = 8;                      // robots that displace one another
+  static constexpr int kMostVisits = 10;                  // times that one of them is displaced
 
+  // Operations of all robots, and what they cost.
+  struct Decision {
+    std::vector<Operation> plans;
+    std::vector<std::int64_t> costs;
+  };
+
+  Decision sample(std::span<const int> order, std::int64_t checks);
+  void take(const Decision& decision);
+  std::vector<int> disturbed(std::span<const int> order);
+  std::int64_t weighted_sum() const;
   void rank_operations(std::span<const Aim> aims);
   std::int64_t cost_of(const Aim& aim, int state, const Operation& operation) const;
   void inherit_by_priority(std::span<const int> order);
@@ -57,7 +70,7 @@ class TurningMoves {
 
   bool is_improving() const { return rank_ == kImproving; }
 
-  int try_to_improve(int robot, int checks);
+  void try_to_improve(int robot, int checks);
   bool is_found(int robot, std::int64_t change, int depth);
   bool is_any_choice_taken(int robot, std::int64_t change, int depth);
   bool may_be_displaced(int robot, std::int64_t change) const;
@@ -84,6 +97,7 @@ class TurningMoves {
   int rank_ = kImproving;   // of the robot whose turn it is in the first part; kImproving in the second
   // Of this search: robots are waiting while those that they displace are searched for an operation.
   int search_ = 0, checks_left_ = 0;
+  std::int64_t checks_done_ = 0;  // in this sample
   std::vector<int> searched_in_, visits_;
   std::vector<char> is_waiting_;
 };

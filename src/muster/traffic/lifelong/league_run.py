@@ -14,8 +14,8 @@ from muster.mission.system.clock import Clock, SystemClock
 from muster.mission.values.ranges import require_counts
 from muster.traffic.lifelong.league_instance import LeagueInstance
 
-CHECKS = 300_000
-"""Operations that are checked in a step while moves are improved."""
+CHECKS = 1_000_000
+"""Operations that are checked in a step, about: samples of moves are made until then."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +78,7 @@ def run_league(
     steps : int
         The number of steps, at least 1.
     checks : int
-        Operations that are checked in a step while moves are improved, at least 0.
+        Operations that are checked in a step, about, at least 0; one sample of moves is made in any case.
     seed : int
         Of what is random; the same seed gives the same run.
     clock : Clock, optional
