@@ -17,7 +17,7 @@ namespace muster {
 // Limits of one step, in numbers that are the same on every machine.
 struct LifelongLimits {
   std::int64_t checks = 1'000'000;       // of operations, in samples of moves
-  std::int64_t states = 20'000'000;      // in new tables of distances
+  std::int64_t states = 10'000'000;      // in new tables of distances
   std::int64_t pairs = 20'000'000;       // of robots and tasks that are compared
   std::int64_t optimal_pairs = 600'000;  // up to which the cheapest assignment is found
   std::size_t table_bytes = std::size_t{1} << 30;
