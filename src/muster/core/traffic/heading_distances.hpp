@@ -23,7 +23,7 @@ class HeadingDistances {
 
   static constexpr int kStep = 2;         // what a step costs: forward along a lane, or a turn
   static constexpr int kAgainstLane = 4;  // what a step against a lane costs beside
-  static constexpr int kNoWay = 1 << 20;
+  static constexpr int kNoWay = 1 << 26;
 
   // Makes tables of goals that have none, `most` at most, on `threads` threads. If there is no room for the tables of
   // all goals, the first ones get it, and tables that were not asked for longest make room.

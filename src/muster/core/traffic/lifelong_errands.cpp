@@ -60,11 +60,11 @@ void LifelongErrands::advance() {
 }
 
 int LifelongErrands::impossible() const {
-  std::vector<char> is_manned(grid_.size(), false);  // by part
-  for (const int state : moves_.states()) is_manned[grid_.part(TurningGrid::vertex_of(state))] = true;
+  std::vector<char> has_robot(grid_.size(), false);  // by part
+  for (const int state : moves_.states()) has_robot[grid_.part(TurningGrid::vertex_of(state))] = true;
   return static_cast<int>(std::count_if(open_.begin(), open_.end(), [&](int task) {
     const int part = grid_.part(errands(task)[0]);
-    return !is_manned[part] || std::any_of(errands(task).begin(), errands(task).end(),
+    return !has_robot[part] || std::any_of(errands(task).begin(), errands(task).end(),
                                            [&](int vertex) { return grid_.part(vertex) != part; });
   }));
 }
