@@ -1186,3 +1186,53 @@ class JointRefinement:
 
     def solution(self) -> NDArray[numpy.int64]:
         """The vertex of each robot, (steps + 1, robots)."""
+
+class LifelongErrands:
+    """
+    Robots with headings on a grid that carry out tasks without end, step by step.
+    """
+
+    def __init__(self, blocked: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order='C', device='cpu', writable=False)], starts: Sequence[int], tasks: Sequence[Sequence[int]], *, revealed: int, checks: int = 1000000, seed: int = 0) -> None:
+        """
+        `blocked` is (rows, columns); a cell is row * columns + column. Robots head east at first. Raises ValueError where a cell is not free, a task has no cell, or two robots start in one cell.
+        """
+
+    def advance(self) -> None:
+        """Assigns tasks, decides moves, and takes one step."""
+
+    @property
+    def step(self) -> int: ...
+
+    @property
+    def finished(self) -> int:
+        """The number of tasks that are finished."""
+
+    @property
+    def impossible(self) -> int:
+        """
+        The number of revealed tasks that no robot can finish: no way leads to all their cells.
+        """
+
+    @property
+    def actions(self) -> list[str]:
+        """
+        Of each robot: a letter for each step; F forward, R clockwise, C counter-clockwise, W wait.
+        """
+
+    @property
+    def busy_steps(self) -> list[int]:
+        """Of each robot: the number of steps in which it had a task."""
+
+    @property
+    def events(self) -> list[tuple[int, int, int, int]]:
+        """
+        (step, robot, task, number of its cells visited), whenever a robot visits a cell of its task.
+        """
+
+    @property
+    def assignments(self) -> list[tuple[int, int, int]]:
+        """(step, robot, task), whenever a robot gets another task; -1 for none."""
+
+    @property
+    def revealed(self) -> list[int]:
+        """Of each task that was revealed: the step."""

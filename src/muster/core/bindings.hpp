@@ -30,5 +30,6 @@ void bind_passing_order(nanobind::module_& m);
 void bind_annotated_roadmap(nanobind::module_& m);
 void bind_safe_intervals(nanobind::module_& m);
 void bind_lacam(nanobind::module_& m);
+void bind_lifelong(nanobind::module_& m);
 
 }  // namespace muster

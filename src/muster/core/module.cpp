@@ -33,4 +33,5 @@ NB_MODULE(_core, m) {
   muster::bind_passing_order(m);
   muster::bind_safe_intervals(m);
   muster::bind_lacam(m);
+  muster::bind_lifelong(m);
 }

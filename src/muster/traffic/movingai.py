@@ -10,11 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from muster.mission.errors import Finding, InputError
+from muster.mission.texts.text_files import read_text
 
 Bools = npt.NDArray[np.bool_]
 Cell = tuple[int, int]
 """(row, column), from 0."""
-_FREE = frozenset(".GS")
+_FREE = frozenset(".EGS")
 _BLOCKED = frozenset("@OTW")
 
 
@@ -29,7 +30,7 @@ class Ends:
 def read_map(path: Path) -> Bools:
     """Which cells of a `.map` are blocked, (rows, columns).
 
-    `.`, `G` and `S` are free; `@`, `O`, `T` and `W` are blocked.
+    `.`, `G`, `S`, and `E` of the League of Robot Runners are free; `@`, `O`, `T` and `W` are blocked.
 
     Raises
     ------
@@ -38,7 +39,7 @@ def read_map(path: Path) -> Bools:
     OSError
         where it cannot be read.
     """
-    lines = path.read_text().splitlines()
+    lines = read_text(path).splitlines()
     head = {line.split()[0]: line.split()[-1] for line in lines[:3] if line.strip()}
     for line, key in enumerate(("type", "height", "width"), 1):
         if key not in head or (key != "type" and not head[key].isdigit()):
@@ -62,7 +63,7 @@ def read_scenario(path: Path) -> list[Ends]:
     OSError
         where it cannot be read.
     """
-    lines = path.read_text().splitlines()
+    lines = read_text(path).splitlines()
     if not lines or lines[0].split()[:1] != ["version"]:
         raise _wrong(path, 1, "", lines[0] if lines else "empty", "`version 1`")
     ends = []

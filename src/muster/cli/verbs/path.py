@@ -85,8 +85,21 @@ _FILE = click.Path(path_type=File)
 @click.option("--scenario", type=_FILE, metavar="FILE", help="Of --joint: starts and goals on a MovingAI map (.scen).")
 @click.option("--agents", type=click.IntRange(min=1), metavar="N", help="Of --joint: the first N.  [default: all]")
 @click.option("--time-limit", type=Finite(1e-3, 1e6), metavar="S", help="Of --joint, seconds.  [default: 10]")
-@click.option("--expansions", type=click.IntRange(min=1), metavar="N", help="Of --joint: end after N expansions.")
-@click.option("-o", "--output", type=_FILE, metavar="FILE", help="Of --joint: write the paths (.json, else text).")
+@click.option(
+    "--expansions",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Of --joint: end after N expansions; of --lifelong: N operations are checked a step.  [default: 1000000]",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=_FILE,
+    metavar="FILE",
+    help="Of --joint: write the paths (.json, else text); of --lifelong: what the league writes (.json).",
+)
+@click.option("--lifelong", is_flag=True, help="Run an instance of the League of Robot Runners (MISSION: its .json).")
+@click.option("--steps", type=click.IntRange(min=1), metavar="N", help="Of --lifelong.  [default: 600]")
 @format_option
 @click.option("--plot", type=_FILE, metavar="FILE", help="Draw the path on the map (.png, .svg, .pdf).")
 @quiet_option
@@ -114,6 +127,8 @@ def command(  # noqa: PLR0913  the options of a verb
     time_limit: float | None,
     expansions: int | None,
     output: File | None,
+    lifelong: bool,
+    steps: int | None,
     form: str,
     plot: File | None,
     quiet: bool,
@@ -124,7 +139,7 @@ def command(  # noqa: PLR0913  the options of a verb
     `shortest` is the path that plans are made of: the shortest at any angle. That there is no path is an answer, with
     the reason, and no error. Without a map the path is straight. With --together it finds paths of several robots in
     space and time, on which they do not touch. With --joint
-    MISSION may be a MovingAI map (.map).
+    MISSION may be a MovingAI map (.map). With --lifelong it is an instance of the League of Robot Runners.
     """
     require_writable(output, (plot, trajectory), (*mission.files, scenario), ())
     require_drawable(plot)
@@ -137,6 +152,14 @@ def command(  # noqa: PLR0913  the options of a verb
         "--expansions": expansions,
         "--output": output,
     }
+    if lifelong:
+        from muster.cli.verbs import path_lifelong
+
+        of_joint_alone = {name: of_joint[name] for name in ("--scenario", "--agents", "--time-limit")}
+        _require_none(of_joint_alone | {"--plot": plot, "--joint": joint or None}, "no --lifelong")
+        settings = path_lifelong.Settings(steps, expansions, seed)
+        return path_lifelong.run(File(mission.name), settings, form, output, quiet=quiet)
+    _require_none({"--steps": steps}, "--lifelong")
     if joint:
         from muster.cli.verbs import path_joint
 
