@@ -6,6 +6,7 @@ executor plans: PX4 leaves its offboard mode below 2 Hz. What it shares with the
 
 from __future__ import annotations
 
+import logging
 import math
 import threading
 import time
@@ -16,10 +17,9 @@ from muster.execution.fleet import Failure
 from muster.execution.robots.monitor import Limits
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot
+from muster.mission.plan import Plan
 from muster.mission.system.clock import Clock, SystemClock
 from muster.mission.value_types import shown
-from muster.motion import actions
-from muster.motion.actions import Impossible
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 from muster_robots.fleet_settings import FlightSettings
 from muster_robots.mavlink.autopilots import AtEnd
@@ -28,8 +28,11 @@ from muster_robots.mavlink.faults import Fault, Kind
 from muster_robots.mavlink.fence import fences_of, no_fence
 from muster_robots.mavlink.frames import GlobalFrame, LocalFrame, StartFrame
 from muster_robots.mavlink.links import Link, links_of
+from muster_robots.mavlink.planned_legs import Way, planned_refusals
 from muster_robots.mavlink.session import Session
 from muster_robots.mavlink.telemetry import DroneTelemetry
+
+_log = logging.getLogger(__name__)
 
 _STEP_S = 0.02
 _LAST_WORDS_S = 1.0, 15.0
@@ -148,28 +151,46 @@ class MavlinkFleet:
                 )
             if not again:
                 self._require_near(session.drone)
-        self._read_limits()
+        self._read_limits(may_refuse=not again)
         if again and self._settings.arm:
             self._tell_all(Session.take_over)
         if self._speaker is not None:
             self._speaker.start()
 
-    def _read_limits(self) -> None:
-        """Read what limits each drone by the parameters of its autopilot, before it gets an order."""
+    def _read_limits(self, *, may_refuse: bool) -> None:
+        """Read the limits that the autopilot of each drone sets, before the drone gets an order.
+
+        Raises
+        ------
+        ParameterError
+            if a fence is on and was not read to its end, if `may_refuse`; else all tasks are refused for its drone.
+        """
         self._tell_all(Session.read_limits)
         while any(session.busy for session in self.sessions.values()):
             self._go_on()
+        for name, session in self.sessions.items():
+            limits = session.drone.limits
+            if limits.note and not limits.unread:
+                _log.warning("%s: no polygons and circles of its autopilot's fence are checked: %s", name, limits.note)
+            if limits.unread and may_refuse:
+                raise ParameterError(f"{name}: {limits.unread}; expected all of it before a flight, or the fence off")
 
-    def refusals(self, mission: Mission) -> Iterator[tuple[str, str, str]]:
-        """For each task that an autopilot would refuse to fly: the robot, the task, and why."""
+    def refusals(self, mission: Mission, plan: Plan, way: Way) -> Iterator[tuple[str, str, str]]:
+        """For each task that an autopilot would refuse to fly: the robot, the task, and why.
+
+        Parameters
+        ----------
+        mission : Mission
+            Its tasks; each is looked at for every robot.
+        plan : Plan
+            Its legs are looked at, too.
+        way : callable
+            What a robot passes from one place to another.
+        """
         for robot in mission.robots:
             session = self.sessions[robot.id]
-            for task in mission.tasks if session.drone.parameters else ():
-                doing = actions.plan(task, robot)
-                if not isinstance(doing, Impossible):
-                    flown = session.drone.flown(doing.waypoints)
-                    if why := session.refusal([waypoint.position for waypoint in flown]):
-                        yield robot.id, task.id, f"{Kind.OUTSIDE_FENCE.words}: {why}"
+            if session.drone.limits.is_read:
+                yield from planned_refusals(session.drone, mission, plan, way)
 
     def finish(self, at_end: AtEnd, halted: Callable[[], bool]) -> None:
         """Give all drones the last order, and wait until they have landed; at `halted` they hover. `hold`: nothing."""
