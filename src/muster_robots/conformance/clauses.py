@@ -11,9 +11,11 @@ from muster.mission.errors import MusterError
 from muster.mission.model import Robot
 from muster.mission.records import key_of, required, specified
 from muster.mission.value_types import Text
-from muster.running.fleet_type import BATTERY, HOLDS, RESUMES
+from muster.motion.kinematics.registry import limits_of
+from muster.running.fleet_type import BATTERY, HOLDS, LEASED, RESUMES
 from muster_robots.conformance.stand import (
     FRESH_S,
+    LATENCY_S,
     NEAR_M,
     STILL_M,
     LackingError,
@@ -22,9 +24,12 @@ from muster_robots.conformance.stand import (
     Trial,
     told,
 )
+from muster_robots.goal_fleet import LEASE_S
 
 _NONSENSE = "no such thing"
 _HOLD_S, _WATCHED_S, _SILENT_S = 3.0, 2.0, 4.0
+_STANDS_S = 1.0
+"""Seconds in which a robot that drives moves: one that stands is given its goal again after a little longer."""
 MOST_LATE_S = 1.0
 """Seconds by which `advance` may return late: meanwhile no other robot is told anything."""
 
@@ -45,6 +50,8 @@ class Clause:
         Whether a robot must be made silent.
     several : bool
         Whether it needs two robots.
+    has_leases : bool
+        Whether it needs the room in which leases are tested.
     """
 
     words: str
@@ -52,6 +59,7 @@ class Clause:
     ability: str = ""
     silences: bool = False
     several: bool = False
+    has_leases: bool = False
 
 
 def settings_are_refused(stand: Stand) -> str:
@@ -353,6 +361,40 @@ def charge_is_a_share(stand: Stand) -> str:
         return ", ".join(f"{robot} {trial.said(robot).charge:.2f}" for robot in trial.robots)
 
 
+def orders_age(stand: Stand) -> str:
+    """Send a robot far: it goes on for longer than a lease, and stops within one after Muster is gone.
+
+    Afterwards it takes orders again, by which it comes back.
+    """
+    with stand.abandoned() as trial:
+        robot = trial.robots[0]
+        there = trial.lease_target(robot)
+        trial.takes(robot, trial.send(robot, there))
+        trial.starts_moving(robot)
+        begun_s = trial.fleet.time_s
+        while trial.fleet.time_s < begun_s + LEASE_S + FRESH_S:
+            before, before_s = trial.said(robot).position, trial.fleet.time_s
+            trial.wait(_STANDS_S, lambda: False)
+            if trial.away(robot, before) < STILL_M:
+                raise LackingError(f"{robot}: stopped {before_s - begun_s:.1f} s after its order, which was renewed")
+        left_at, limits = trial.said(robot).position, limits_of(stand.mission.robots[0])
+    braking_m = limits.braking_m(limits.speed_mps)
+    stand.idle(LEASE_S + LATENCY_S + 2 * braking_m / limits.speed_mps)
+    with stand.opened(stand.mission if stand.is_declared(RESUMES) else None, again=stand.is_declared(RESUMES)) as trial:
+        here = trial.said(robot).position
+        trial.wait(_WATCHED_S, lambda: False)
+        gone_m, moved_m = math.dist(here, left_at), trial.away(robot, here)
+        most_m = limits.speed_mps * (LEASE_S + LATENCY_S) + braking_m + NEAR_M
+        if moved_m > STILL_M or gone_m > most_m:
+            raise LackingError(
+                f"{robot}: {gone_m:.2f} m farther, and {moved_m:.2f} m more, {LEASE_S:g} s after orders were renewed "
+                f"last; expected at most {most_m:.2f} m, and that it stands"
+            )
+        back = trial.start(robot)
+        trial.passes(robot, trial.send(robot, back), 1, back)
+        return f"{robot} went on while renewed, stopped after {gone_m:.2f} m without, and came back"
+
+
 CLAUSES: Mapping[str, Clause] = {
     "settings": Clause("a wrong setting is refused by name", settings_are_refused),
     "claims": Clause("claims are the same each time, and have no side effect", claims_are_stable),
@@ -372,5 +414,6 @@ CLAUSES: Mapping[str, Clause] = {
     "prompt": Clause("a silent robot holds nobody up", silence_holds_nobody_up, silences=True),
     "again": Clause("a robot that answers again takes orders", a_robot_is_heard_again, silences=True),
     "restart": Clause("a run goes on from where robots are", a_run_is_resumed, ability=RESUMES),
+    "lease": Clause("orders that nobody renews end", orders_age, ability=LEASED, has_leases=True),
 }
 """What is tested, in this order, by name."""
