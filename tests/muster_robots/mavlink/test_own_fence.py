@@ -7,7 +7,11 @@ import pytest
 from tests.muster_robots.mavlink.drones import ORIGIN, Sky, mission
 from tests.muster_robots.mavlink.talk import M, from_drone
 
+import muster
+from muster.execution.robots.task_motion import straight
 from muster.mission.errors import ParameterError
+from muster_robots.fleet_settings import FlightSettings
+from muster_robots.mavlink import MavlinkFleet
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
 from muster_robots.mavlink.frames import GlobalFrame
 from muster_robots.mavlink.own_fence import FenceUnreadError, fence_of, read_fence
@@ -288,3 +292,18 @@ def test_a_fence_that_is_off_is_not_asked_for():
 def test_nothing_is_asked_without_leave_to_arm():
     _, drone = connected(Geofence(FENCE.areas), arm=False)
     assert {message.get_type() for message in drone.heard} <= {"HEARTBEAT", "COMMAND_LONG"}
+
+
+def test_where_a_mission_goes_on_a_fence_that_was_not_read_refuses_all_tasks_of_its_drone():
+    """Its drone may be in the air: it is heard and brought home, and flies nothing else."""
+    there = mission(2)
+    sky = Sky(there, PX4, {}, {"r_0": Geofence(FENCE.areas, untold=3)})
+    fleet = MavlinkFleet(there, sky.endpoints, FlightSettings(arm=True), clock=sky.clock, wait=sky.wait)
+    try:
+        fleet.connect(5.0, again=True)
+        refused = list(fleet.refusals(there, muster.solve(there, iterations=50), straight))
+        assert {(robot, task) for robot, task, _ in refused} == {("r_0", task.id) for task in there.tasks}
+        assert all("was not read to its end: item 3 of 7 was not told" in why for _, _, why in refused)
+    finally:
+        fleet.close()
+        sky.close()
