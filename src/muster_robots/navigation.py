@@ -68,6 +68,11 @@ class Navigator(Protocol[G]):
         """Whether somebody serves it."""
         ...
 
+    @property
+    def foreign(self) -> str:
+        """The id of a goal under way that no Muster has given; empty if none is known."""
+        ...
+
     def go(self, goal: G) -> Navigation[G]:
         """Let the robot go there; where that cannot even be asked, it is aborted."""
         ...
@@ -106,6 +111,17 @@ class NavigationGoals(Generic[G]):
     def at_rest(self) -> bool:
         """Whether no goal is under way, as far as is known."""
         return self._navigation is None
+
+    @property
+    def foreign(self) -> str:
+        """Whose goal the robot's navigation pursues, if that is not Muster's, in words; empty if none is known."""
+        found = self._navigator.foreign
+        return f"{self._name} has goal {found}, which is not Muster's" if found else ""
+
+    def leave(self) -> None:
+        """Give up the goal for that of somebody else, which stays as it is."""
+        self._wanted = None
+        self._cancel()
 
     def give(self, goal: G) -> None:
         """Let the robot go there, in place of where it goes now."""

@@ -75,6 +75,15 @@ class Orders(Protocol):
         """Whether somebody receives them."""
         ...
 
+    @property
+    def foreign(self) -> str:
+        """Whose goal the robot pursues, if that is not Muster's, in words; empty if none is known."""
+        ...
+
+    def leave(self) -> None:
+        """Give up the goal for that of somebody else, which stays as it is."""
+        ...
+
     def begin(self, now_s: float) -> None:
         """Note that the robot was sent somewhere."""
         ...
@@ -126,7 +135,7 @@ def orders_for(drive: Drive, topics: str, frame: str, now: Callable[[], float], 
 class VelocityOrders:
     """Velocities on `<robot>/cmd_vel`, which are said all the time."""
 
-    at_rest, reports = True, False
+    at_rest, reports, foreign = True, False, ""
 
     def __init__(self, topics: str) -> None:
         self.expected = f"a subscriber of {topics}/cmd_vel (geometry_msgs/Twist)"
@@ -145,6 +154,9 @@ class VelocityOrders:
             self._stood_s = course.now_s
         if course.now_s - self._stood_s <= _TOLD_STILL_S:
             publish(self._publisher, twist_of(course.velocity))
+
+    def leave(self) -> None:
+        """There is no goal."""
 
     def repeat(self) -> None:
         """The next velocity comes anyway."""
@@ -182,6 +194,9 @@ class _Goals(ABC):
             self._give(pose_stamped(self._frame, course.place, goal_heading(aim, course.said)))
             self._given, self._aim = course.at, aim.position
 
+    def leave(self) -> None:
+        self._given = None
+
     def repeat(self) -> None:
         self._given = None
 
@@ -201,7 +216,7 @@ class _Goals(ABC):
 class GoalOrders(_Goals):
     """Goals as geometry_msgs/PoseStamped on a topic, latched; to stand, the robot's goal becomes where it is."""
 
-    at_rest, reports = True, False
+    at_rest, reports, foreign = True, False, ""
 
     def __init__(self, topic: str, frame: str) -> None:
         super().__init__(frame)
@@ -247,6 +262,14 @@ class ActionOrders(_Goals):
     @property
     def received(self) -> bool:
         return self._goals.ready
+
+    @property
+    def foreign(self) -> str:
+        return self._goals.foreign
+
+    def leave(self) -> None:
+        super().leave()
+        self._goals.leave()
 
     def speak(self, course: Course) -> Ended | None:
         ended = self._goals.hear(course.now_s, under_way=course.under_way)

@@ -144,6 +144,8 @@ class Ros1Port:
         said = self._last_word
         assert said is not None  # or nobody would steer it
         now, follower = self._clock.unpaused_s, self._follower
+        if foreign := self._orders.foreign:
+            self._leave(foreign)
         under_way = follower.aim is not None and not follower.stays
         place = self._goal(said.position if steered.aim is None else steered.aim.position)
         at = (follower.order, follower.passed)
@@ -191,9 +193,12 @@ class Ros1Port:
             self.stand()
 
     def _leave(self, why: str) -> None:
-        """Leave it to somebody else, who has it."""
+        """Leave it to somebody else, who has it, and note that again for as long as it is so."""
+        is_new = not self.custody.is_taken
         self.custody.take(self._clock.unpaused_s, Holder.STATION, why)
-        self._on_pass()
+        if is_new:
+            self._orders.leave()
+            self._on_pass()
 
     def _take_end(self, ended: Ended, said: Telemetry) -> None:
         """Take in that its navigation has arrived, or why it does not get there."""

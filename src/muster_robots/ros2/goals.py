@@ -34,6 +34,15 @@ class Goals(Protocol):
         """Whether nothing that was given is under way, as far as that is said."""
         ...
 
+    @property
+    def foreign(self) -> str:
+        """Whose goal the robot pursues, if that is not Muster's, in words; empty if none is known."""
+        ...
+
+    def leave(self) -> None:
+        """Give up the goal for that of somebody else, which stays as it is."""
+        ...
+
     def give(self, goal: PoseStamped) -> None:
         """Let it go there, in place of where it goes now."""
         ...
@@ -61,7 +70,7 @@ class PoseGoals:
     """Goals on a topic. They have no result: poses show when they are reached."""
 
     at_rest, reports = True, False
-    unfit = feedback = ""
+    unfit = feedback = foreign = ""
 
     def __init__(self, writer: Writer[PoseStamped], topic: str) -> None:
         self.expected = f"a subscriber of {topic} (geometry_msgs/PoseStamped)"
@@ -71,6 +80,9 @@ class PoseGoals:
     def ready(self) -> bool:
         """Whether somebody subscribes."""
         return self._writer.listeners > 0
+
+    def leave(self) -> None:
+        """Nothing that was given is under way, as far as that is said."""
 
     def give(self, goal: PoseStamped) -> None:
         self._writer.write(goal)

@@ -129,9 +129,9 @@ class RclpyReader(Generic[M]):
 
 
 class RclpyNavigator:
-    """See `navigation.Navigator`."""
+    """See `navigation.Navigator`. The goals of others are not known here: rclpy's client is told of its own alone."""
 
-    unfit = ""
+    unfit = foreign = ""
 
     def __init__(self, client: Any, kind: Any) -> None:
         self._client, self._kind = client, kind

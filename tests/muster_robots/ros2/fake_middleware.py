@@ -61,7 +61,7 @@ class Navigation(Heard):
 
 class Navigator:
     ready = True
-    unfit = ""
+    unfit = foreign = ""
 
     def __init__(self):
         self.given = []
