@@ -10,6 +10,8 @@ from typing import Generic, Literal, Protocol, TypeVar
 
 G = TypeVar("G")
 
+PURSUED_S = 2.0
+"""Seconds after a goal of others on a topic for which a robot counts as theirs: by then it moves, as poses show."""
 _TRIES = 2
 """Times that a goal is given which the robot's navigation gives up."""
 _PATIENCE_S = 5.0

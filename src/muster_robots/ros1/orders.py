@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
 from muster.motion.port import Place, Telemetry, Waypoint
-from muster_robots.navigation import Ended, NavigationGoals
+from muster_robots.navigation import PURSUED_S, Ended, NavigationGoals
 from muster_robots.pose_port import goal_heading
 from muster_robots.ros1.message_conversion import pose_stamped, twist_of
-from muster_robots.ros1.node import publish
+from muster_robots.ros1.node import hear, listeners, publish
 from muster_robots.ros1.ros import PoseStamped, Twist, rospy
 from muster_robots.steering import STILL, Velocity
 
@@ -216,25 +216,37 @@ class _Goals(ABC):
 class GoalOrders(_Goals):
     """Goals as geometry_msgs/PoseStamped on a topic, latched; to stand, the robot's goal becomes where it is."""
 
-    at_rest, reports, foreign = True, False, ""
+    at_rest, reports = True, False
 
     def __init__(self, topic: str, frame: str) -> None:
         super().__init__(frame)
+        self.foreign = ""
+        self._topic, self._is_foreign, self._foreign_s = topic, False, -math.inf
         self.expected = f"a subscriber of {topic} (geometry_msgs/PoseStamped)"
         self._publisher = rospy.Publisher(topic, PoseStamped, queue_size=1, latch=True)
+        self._others = hear(topic, PoseStamped, self._hear_goal, queue_size=10)
 
     @property
     def received(self) -> bool:
-        return bool(self._publisher.get_num_connections() > 0)
+        return listeners(self._publisher) > 0
 
     def speak(self, course: Course) -> None:
+        if self._is_foreign:
+            self._is_foreign, self._foreign_s = False, course.now_s
+        self.foreign = f"a goal on {self._topic} is not Muster's" if course.now_s < self._foreign_s + PURSUED_S else ""
         self._follow(course)
 
     def poses(self) -> list[Any]:
         return []
 
     def close(self) -> None:
+        self._others.unregister()
         self._publisher.unregister()
+
+    def _hear_goal(self, goal: Any) -> None:
+        """Take in a goal on the topic, which may be one of Muster's."""
+        if goal._connection_header["callerid"] != rospy.get_name():
+            self._is_foreign = True
 
     def _give(self, goal: Any) -> None:
         publish(self._publisher, goal)

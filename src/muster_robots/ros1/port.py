@@ -171,9 +171,9 @@ class Ros1Port:
         return [here, tf_of(self._frame.name, f"{OWN}{self.robot}/goal", self._goal(aim.position), aim.heading or 0.0)]
 
     def stand(self) -> None:
-        """Stand where it is, at once, if it was ever sent anywhere."""
+        """Stand where it is, at once, if it was ever sent anywhere, and nobody else has it."""
         with self._lock:
-            if self._commanded:
+            if self._commanded and not self.custody.is_taken:
                 said = self._last_word
                 here = (0.0, 0.0, 0.0) if said is None else self._goal(said.position)
                 self._orders.stand(self._clock.unpaused_s, here, said)

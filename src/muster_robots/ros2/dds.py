@@ -60,6 +60,10 @@ class DdsMiddleware:
         """See `Middleware`."""
         return DdsReader(self._dds, self._participant, topic, message, latched=latched or is_latched(topic))
 
+    def others(self, topic: str, message: type[M]) -> DdsReader[M]:
+        """See `Middleware`: neither matches the writers of this participant, nor counts as their listener."""
+        return DdsReader(self._dds, self._participant, topic, message, latched=False, ignores_own=True)
+
     def navigator(self, action: str) -> Navigator[PoseStamped]:
         """See `Middleware`."""
         return DdsNavigator(self, action)
@@ -142,9 +146,21 @@ class DdsWriter(Generic[M]):
 class DdsReader(Generic[M]):
     """See `middleware.Reader`."""
 
-    def __init__(self, dds: _Dds, participant: Any, topic: str, message: type[M], *, latched: bool) -> None:
+    def __init__(
+        self,
+        dds: _Dds,
+        participant: Any,
+        topic: str,
+        message: type[M],
+        *,
+        latched: bool,
+        ignores_own: bool = False,
+    ) -> None:
         self._message = message
-        self._reader = dds.reader(participant, _dds_topic(topic), _idl(message), latched=latched)
+        if ignores_own:
+            self._reader = dds.others(participant, _dds_topic(topic), _idl(message))
+        else:
+            self._reader = dds.reader(participant, _dds_topic(topic), _idl(message), latched=latched)
 
     def take(self) -> list[M]:
         samples = self._reader.take(KEPT)
@@ -164,6 +180,7 @@ class _Dds:
         self._publishing = qos.Qos(old, kept, policy.Reliability.Reliable(10**8))
         self._hearing = qos.Qos(old, kept, policy.Reliability.BestEffort)
         lasting = (policy.Reliability.Reliable(10**8), policy.Durability.TransientLocal)
+        self._hearing_others = qos.Qos(old, kept, policy.Reliability.BestEffort, policy.IgnoreLocal.Participant)
         self._hearing_latched = qos.Qos(old, kept, *lasting)
         self._qos: Any = qos
         self._calling = (old, kept, policy.Reliability.Reliable(10**8))
@@ -182,6 +199,10 @@ class _Dds:
         quality = self._hearing_latched if latched else self._hearing
         quality = self._service(identity) if identity else quality
         return self._reader(participant, self._topic(participant, topic, kind), qos=quality)
+
+    def others(self, participant: Any, topic: str, kind: Any) -> Any:
+        """Return a reader that ignores the writers of its own participant."""
+        return self._reader(participant, self._topic(participant, topic, kind), qos=self._hearing_others)
 
     def publications(self, participant: Any) -> Any:
         """The reader of what others publish, and how (DDS 1.4, 2.2.5: DCPSPublication)."""

@@ -69,6 +69,9 @@ class RclpyMiddleware:
         self._node.create_subscription(_class_of(message), topic, reader.hear, quality)
         return reader
 
+    def others(self, topic: str, message: type[M]) -> None:
+        """See `Middleware`: rclpy gives a node its own messages, too."""
+
     def navigator(self, action: str) -> RclpyNavigator:
         """See `Middleware`."""
         kind = _module("nav2_msgs.action", "install nav2_msgs").NavigateToPose

@@ -27,7 +27,9 @@ class There:
 
         self.now, self.x, self.told, self.actions = 0.0, 0.0, [], Navigator()
         self.drive = drive
-        publisher = SimpleNamespace(publish=self.told.append, get_num_connections=lambda: 1)
+        stats = SimpleNamespace(get_stats_info=lambda: [(1, "/robot", "o", "TCPROS", "/r", True, "")])
+        publisher = SimpleNamespace(publish=self.told.append, get_num_connections=lambda: 1, impl=stats)
+        monkeypatch.setattr(orders, "hear", lambda _, __, heard, **___: setattr(self, "goal_said", heard))
         monkeypatch.setattr(orders.rospy, "Publisher", lambda *_, **__: publisher)
         monkeypatch.setattr(orders, "pose_stamped", lambda _, place, __: place[0])
         monkeypatch.setattr(orders, "twist_of", lambda velocity: velocity)
@@ -193,6 +195,27 @@ def test_one_that_pursues_a_goal_of_somebody_else_is_left_to_it_until_it_has_end
     robot.pass_by(5.0, 0.0)
     assert not robot.port.telemetry().suspended
     assert robot.goals == [50.0]
+
+
+@pytest.mark.parametrize("drive", GOALS)
+def test_a_goal_of_somebody_else_on_its_topic_takes_a_robot_until_it_has_stood(there, drive, caplog):
+    robot = there(drive)
+    topic = "/r/WP" if drive == "goals" else "/r/move_base_simple/goal"
+    robot.port.send([FAR])
+    robot.goal_said(SimpleNamespace(_connection_header={"callerid": "/unnamed"}))  # its own
+    robot.pass_by(2.0, 1.0)
+    assert not robot.port.telemetry().suspended
+    robot.goal_said(SimpleNamespace(_connection_header={"callerid": "/rviz"}))
+    robot.pass_by(0.5, 1.0)
+    assert robot.port.telemetry().suspended == f"another station: a goal on {topic} is not Muster's"
+    robot.port.cancel()
+    robot.pass_by(10.0, 1.0)
+    robot.port.stand()  # as at the end
+    assert robot.port.telemetry().suspended
+    robot.pass_by(5.0, 0.0)
+    assert not robot.port.telemetry().suspended
+    assert robot.goals == [50.0]
+    assert len([one for one in caplog.records if "is not Muster's" in one.getMessage()]) == 1
 
 
 def test_goals_of_move_base_are_others_by_their_ids(rospy_there, monkeypatch):

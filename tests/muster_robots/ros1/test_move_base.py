@@ -111,6 +111,31 @@ def test_a_server_that_is_killed_and_comes_back_gets_its_goal_again(ros, tmp_pat
 
 
 @pytest.mark.long
+@pytest.mark.parametrize(
+    ("by", "topic", "words", "why"),
+    [
+        ("action", "move_base/goal", (), "move_base has goal /rviz-1-12.5, which is not Muster's"),
+        ("topic", "move_base_simple/goal", ("simple",), "a goal on /r_1/move_base_simple/goal is not Muster's"),
+    ],
+    ids=["action", "topic"],
+)
+def test_a_robot_that_another_station_sends_away_does_its_tasks_when_it_has_been_there(
+    ros, tmp_path, by, topic, words, why
+):
+    (tmp_path / "m.yaml").write_text(MISSION.replace("[8, 6]", "[60, 6]"), encoding="utf-8")
+    for k in range(2):
+        started(ros, f"r_{k}", 0, 3 * k, *words)
+    asked = ("--drive", "move_base_simple", "--arrival", "0.2") if words else ()
+    carried = ros.muster("m.yaml", *QUICK, "--profile", "move_base", *asked)
+    told = told_until(carried, "r_1 sets out for task")
+    ros.start(ros.file("other_station.py"), f"/r_1/{topic}", by, 10, 12)
+    told += told_until(carried, "is not Muster's" if words else "which is not Muster's")
+    report, told = done(carried, told)
+    assert f"another station: {why}" in told
+    assert set(report["tasks_done"]) == TASKS, told
+
+
+@pytest.mark.long
 def test_all_tasks_are_done_where_the_master_is_started_anew(own_ros, mission):
     started(own_ros, "r_0", 0, 0)
     started(own_ros, "r_1", 0, 3)

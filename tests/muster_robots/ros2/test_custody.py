@@ -178,6 +178,22 @@ def test_one_that_pursues_a_goal_of_somebody_else_is_left_to_it_until_it_has_end
     assert there.goals == [50.0, 30.0]
 
 
+def test_a_goal_of_somebody_else_on_its_topic_takes_a_robot_until_it_has_stood():
+    there = There("goals")
+    there.port.send([Waypoint(FAR)])
+    there.pass_by(2.0, 1.0)
+    assert not there.port.telemetry().suspended
+    there.wire.heard["/r/goal_pose"].append(posed(-5.0))
+    there.pass_by(1.0, 0.0)  # navigation plans
+    assert there.port.telemetry().suspended == "another station: a goal on /r/goal_pose is not Muster's"
+    there.port.cancel()
+    there.pass_by(10.0, -0.5)
+    assert there.port.telemetry().suspended
+    there.pass_by(5.0, 0.0)
+    assert not there.port.telemetry().suspended
+    assert there.goals == [50.0]
+
+
 def test_a_goal_of_somebody_else_is_told_once(caplog):
     there = There("nav2")
     there.wire.actions.foreign = "12ab"

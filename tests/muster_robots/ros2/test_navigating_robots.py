@@ -135,6 +135,25 @@ def test_a_goal_of_another_client_takes_the_robot_until_it_is_there(robot, fleet
     other.close()
 
 
+def test_a_goal_of_another_station_on_goal_pose_takes_the_robot_until_it_has_stood(robot, fleet_of):
+    robot("r_0", 0, 0, "goals", "tf")
+    fleet = fleet_of()
+    port = fleet.ports["r_0"]
+    port.send([Waypoint((60.0, 0.0, 0.0))])
+    until(fleet, lambda: port.telemetry().position[0] > 1.0)
+    assert not port.telemetry().suspended  # its own goal is none of others
+    other = DdsMiddleware()
+    says = other.writer("/r_0/goal_pose", PoseStamped)
+    until(fleet, lambda: says.listeners == 2)
+    place = Pose(Point(0.0, 4.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0))
+    says.write(PoseStamped(Header(frame_id="map"), place))
+    until(fleet, lambda: port.telemetry().suspended)
+    assert port.telemetry().suspended == "another station: a goal on /r_0/goal_pose is not Muster's"
+    until(fleet, lambda: not port.telemetry().suspended)
+    assert port.telemetry().position[:2] == pytest.approx((0.0, 4.0), abs=0.1)
+    other.close()
+
+
 def test_a_goal_that_is_cancelled_ends_and_the_robot_stays(robot, fleet_of):
     robot("r_0", 0, 0, "nav2=jazzy", "tf")
     fleet = fleet_of(profile="nav2")
