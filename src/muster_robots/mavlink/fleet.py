@@ -6,7 +6,6 @@ executor plans: PX4 leaves its offboard mode below 2 Hz. What it shares with the
 
 from __future__ import annotations
 
-import logging
 import math
 import threading
 import time
@@ -28,11 +27,9 @@ from muster_robots.mavlink.faults import Fault, Kind
 from muster_robots.mavlink.fence import fences_of, no_fence
 from muster_robots.mavlink.frames import GlobalFrame, LocalFrame, StartFrame
 from muster_robots.mavlink.links import Link, links_of
-from muster_robots.mavlink.planned_legs import Way, planned_refusals
+from muster_robots.mavlink.planned_legs import Way, planned_refusals, show_fence
 from muster_robots.mavlink.session import Session
 from muster_robots.mavlink.telemetry import DroneTelemetry
-
-_log = logging.getLogger(__name__)
 
 _STEP_S = 0.02
 _LAST_WORDS_S = 1.0, 15.0
@@ -158,35 +155,15 @@ class MavlinkFleet:
             self._speaker.start()
 
     def _read_limits(self, *, may_refuse: bool) -> None:
-        """Read the limits that the autopilot of each drone sets, before the drone gets an order.
-
-        Raises
-        ------
-        ParameterError
-            if a fence is on and was not read to its end, if `may_refuse`; else all tasks are refused for its drone.
-        """
+        """Read the limits that the autopilot of each drone sets, before the drone gets an order; see `show_fence`."""
         self._tell_all(Session.read_limits)
         while any(session.busy for session in self.sessions.values()):
             self._go_on()
-        for name, session in self.sessions.items():
-            limits = session.drone.limits
-            if limits.note and not limits.unread:
-                _log.warning("%s: no polygons and circles of its autopilot's fence are checked: %s", name, limits.note)
-            if limits.unread and may_refuse:
-                raise ParameterError(f"{name}: {limits.unread}; expected all of it before a flight, or the fence off")
+        for session in self.sessions.values():
+            show_fence(session.drone, may_refuse=may_refuse)
 
     def refusals(self, mission: Mission, plan: Plan, way: Way) -> Iterator[tuple[str, str, str]]:
-        """For each task that an autopilot would refuse to fly: the robot, the task, and why.
-
-        Parameters
-        ----------
-        mission : Mission
-            Its tasks; each is looked at for every robot.
-        plan : Plan
-            Its legs are looked at, too.
-        way : callable
-            What a robot passes from one place to another.
-        """
+        """For each task that an autopilot would refuse to fly: the robot, the task, and why; see `refusals_of`."""
         for robot in mission.robots:
             session = self.sessions[robot.id]
             if session.drone.limits.is_read:

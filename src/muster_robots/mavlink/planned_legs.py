@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator, Sequence
 
+from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan
 from muster.motion import actions
@@ -14,6 +16,29 @@ from muster_robots.mavlink.faults import Kind
 
 Way = Callable[[Robot, Place, Place], Sequence[Waypoint] | None]
 """What a robot passes from one place to another, the last included; None where there is no way."""
+
+
+_log = logging.getLogger(__name__)
+
+
+def show_fence(drone: Drone, *, may_refuse: bool) -> None:
+    """Warn of an autopilot that tells nothing of its fence.
+
+    Parameters
+    ----------
+    may_refuse : bool
+        Whether a fence that is on and was not read to its end ends the run; else all tasks are refused for its drone.
+
+    Raises
+    ------
+    ParameterError
+        for such a fence, if `may_refuse`.
+    """
+    name, limits = drone.robot.id, drone.limits
+    if limits.note and not limits.unread:
+        _log.warning("%s: no polygons and circles of its autopilot's fence are checked: %s", name, limits.note)
+    if limits.unread and may_refuse:
+        raise ParameterError(f"{name}: {limits.unread}; expected all of it before a flight, or the fence off")
 
 
 def order_of(task: Task, robot: Robot, here: Place, way: Way) -> Sequence[Waypoint] | str:
