@@ -171,3 +171,16 @@ def test_what_a_robot_lacks_is_named_before_the_mission_begins(ros, mission, wor
     assert (carried.returncode, out) == (2, "")
     assert own_words(err) == f"robot r_1: {said.format(' within 4 s')}\n"
     assert f"robot r_1: {said.format('')}; it is waited for up to 4 s" in err
+
+
+@pytest.mark.long
+def test_muster_which_hears_goals_on_a_topic_does_not_count_as_the_one_that_receives_them(ros, mission):
+    started(ros, "r_0", 0, 0, "simple")
+    started(ros, "r_1", 0, 3, "poses")
+    time.sleep(1.0)
+    asked = ("--profile", "move_base", "--drive", "move_base_simple", "--wait", "4")
+    carried = ros.muster(mission, *QUICK, *asked)
+    out, err = carried.communicate(timeout=40)
+    assert (carried.returncode, out) == (2, "")
+    expected = "a subscriber of /r_1/move_base_simple/goal (geometry_msgs/PoseStamped)"
+    assert own_words(err) == f"robot r_1: nobody receives its orders within 4 s; expected {expected}\n"
