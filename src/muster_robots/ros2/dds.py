@@ -49,6 +49,7 @@ class DdsMiddleware:
         except self._dds.error as error:
             raise NetworkError(f"DDS domain {number}: {line_of(error)}; see CYCLONEDDS_URI") from None
         self.error = self._dds.error
+        self._others: list[DdsReader[Any]] = []
         self.publications = Endpoints(self._dds.publications(self._participant))
         self.subscriptions = Endpoints(self._dds.subscriptions(self._participant))
 
@@ -62,7 +63,9 @@ class DdsMiddleware:
 
     def others(self, topic: str, message: type[M]) -> DdsReader[M]:
         """See `Middleware`: neither matches the writers of this participant, nor counts as their listener."""
-        return DdsReader(self._dds, self._participant, topic, message, latched=False, ignores_own=True)
+        reader = DdsReader(self._dds, self._participant, topic, message, latched=False, ignores_own=True)
+        self._others.append(reader)
+        return reader
 
     def navigator(self, action: str) -> Navigator[PoseStamped]:
         """See `Middleware`."""
@@ -114,15 +117,21 @@ class DdsMiddleware:
     def decoded(self, message: type[M], reader: Any) -> list[tuple[M, bytes]]:
         """Return what a reader has received, as messages and as bytes."""
         samples = reader.take(KEPT)
-        return [(from_foreign(message, _idl(message).deserialize(one.data)), one.data) for one in samples if one.data]
+        return [
+            (from_foreign(message, _idl(message).deserialize(one.data)), one.data)
+            for one in samples
+            if getattr(one, "data", b"")
+        ]
 
     def wait(self, seconds: float) -> None:
         """See `Middleware`: Cyclone DDS receives in threads of its own."""
         time.sleep(seconds)
 
     def close(self) -> None:
-        """See `Middleware`."""
+        """See `Middleware`. Readers of what others publish end now: to others they count as receivers of orders."""
         self._participant = None
+        for reader in self._others:
+            reader.close()
 
 
 class DdsWriter(Generic[M]):
@@ -162,8 +171,12 @@ class DdsReader(Generic[M]):
         else:
             self._reader = dds.reader(participant, _dds_topic(topic), _idl(message), latched=latched)
 
+    def close(self) -> None:
+        """Hear no more."""
+        self._reader = None
+
     def take(self) -> list[M]:
-        samples = self._reader.take(KEPT)
+        samples = () if self._reader is None else self._reader.take(KEPT)
         kind = _idl(self._message)
         return [from_foreign(self._message, sample) for sample in samples if isinstance(sample, kind)]
 

@@ -135,6 +135,20 @@ def test_a_goal_of_another_client_takes_the_robot_until_it_is_there(robot, fleet
     other.close()
 
 
+def test_a_fleet_that_has_heard_the_goals_of_others_receives_none_when_it_is_closed(fleet_of, robot):
+    robot("r_0", 0, 0, "goals", "tf")
+    fleet = fleet_of()
+    other = DdsMiddleware()
+    says = other.writer("/r_0/goal_pose", PoseStamped)
+    until(fleet, lambda: says.listeners == 2)
+    fleet.close()
+    end = time.monotonic() + 10.0
+    while says.listeners > 1:
+        assert time.monotonic() < end, "this did not come about"
+        other.wait(0.05)
+    other.close()
+
+
 def test_a_goal_of_another_station_on_goal_pose_takes_the_robot_until_it_has_stood(robot, fleet_of):
     robot("r_0", 0, 0, "goals", "tf")
     fleet = fleet_of()
