@@ -149,7 +149,7 @@ help:
 	@echo "make campaign-goods  carry out 2,000 missions with goods and batteries in which robots and stations fail"
 	@echo "make campaign-server  kill servers, runners and workers of mission control at 50 random moments"
 	@echo "make campaign-faults  kill a server of mission control 100 times while its database is away; no order is lost"
-	@echo "make fault-flights  fly 63 simulated flights of drones with faults that come and go"
+	@echo "make fault-flights  fly 66 simulated flights of drones with faults that come and go"
 	@echo "make campaign-narrow  carry out 50 scenes of 2 to 200 robots in narrow places; nobody touches another"
 	@echo "make campaign-coverage  cover 200 random areas with holes; Shapely says whether every place is seen"
 	@echo "make campaign-api  many more requests, made from the description of mission control's API, than the tests make"

@@ -10,6 +10,8 @@ from typing import Generic, Literal, Protocol, TypeVar
 
 G = TypeVar("G")
 
+PURSUED_S = 2.0
+"""Seconds after a goal of others on a topic for which a robot counts as theirs: by then it moves, as poses show."""
 _TRIES = 2
 """Times that a goal is given which the robot's navigation gives up."""
 _PATIENCE_S = 5.0
@@ -68,6 +70,11 @@ class Navigator(Protocol[G]):
         """Whether somebody serves it."""
         ...
 
+    @property
+    def foreign(self) -> str:
+        """The id of a goal under way that no Muster has given; empty if none is known."""
+        ...
+
     def go(self, goal: G) -> Navigation[G]:
         """Let the robot go there; where that cannot even be asked, it is aborted."""
         ...
@@ -106,6 +113,17 @@ class NavigationGoals(Generic[G]):
     def at_rest(self) -> bool:
         """Whether no goal is under way, as far as is known."""
         return self._navigation is None
+
+    @property
+    def foreign(self) -> str:
+        """Whose goal the robot's navigation pursues, if that is not Muster's, in words; empty if none is known."""
+        found = self._navigator.foreign
+        return f"{self._name} has goal {found}, which is not Muster's" if found else ""
+
+    def leave(self) -> None:
+        """Give up the goal for that of somebody else, which stays as it is."""
+        self._wanted = None
+        self._cancel()
 
     def give(self, goal: G) -> None:
         """Let the robot go there, in place of where it goes now."""

@@ -107,11 +107,14 @@ class PoseCustody:
             self._track.popleft()
 
     def take(self, now: float, who: Holder, why: str) -> None:
-        """Note that somebody else commands the robot now: it keeps no order, and takes part again when it has stood."""
+        """Note that somebody else commands the robot now: it keeps no order, and takes part again when it has stood.
+
+        What it is sent after that it is told when it is given back, however often this is noted meanwhile.
+        """
         if not self.is_taken:
             _log.warning("robot %s: %s: %s; it takes no part", self.robot, who.value, why)
-        if self._custody.wanted is Wants.ORDER:
-            self._custody.want(Wants.HOLD, now)
+            if self._custody.wanted is Wants.ORDER:
+                self._custody.want(Wants.HOLD, now)
         self._taken_s, self._taken_by, self._why = now, who, why
         self._custody.let_go(Seen(now, now, None, who))
 

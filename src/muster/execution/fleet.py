@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from muster.execution.robots.monitor import Limits
+from muster.execution.robots.task_motion import Way
 from muster.mission.model import Event, Mission
+from muster.mission.plan import Plan
 from muster.motion.port import RobotPort
 
 
@@ -36,10 +38,22 @@ def limits_of(fleet: Fleet) -> Limits:
     return getattr(fleet, "limits", None) or Limits()
 
 
-def refusals_of(fleet: Fleet, mission: Mission) -> list[tuple[str, str, str]]:
-    """Return which robots of a fleet cannot do which tasks, and why, by its method `refusals`, if it has one."""
+def refusals_of(fleet: Fleet, mission: Mission, plan: Plan, way: Way) -> list[tuple[str, str, str]]:
+    """Return which robots of a fleet cannot do which tasks, and why, by its method `refusals`, if it has one.
+
+    Parameters
+    ----------
+    fleet : Fleet
+        Robots.
+    mission : Mission
+        Whose tasks they are to do.
+    plan : Plan
+        In which order.
+    way : callable
+        What a robot passes from one place to another.
+    """
     refusals = getattr(fleet, "refusals", None)
-    return [] if refusals is None else list(refusals(mission))
+    return [] if refusals is None else list(refusals(mission, plan, way))
 
 
 def is_paused(fleet: Fleet) -> bool:

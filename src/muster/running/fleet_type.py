@@ -33,9 +33,10 @@ ABILITIES: Mapping[str, str] = {
     "charges": "robots are served at stations: they charge, or swap batteries, while they stay there",
     "battery": "robots report how full their batteries are",
     "resumes": "a run goes on after a crash of Muster, from wherever robots are",
+    "leased": "orders age: robots stop by themselves when nobody has renewed their orders for a while",
 }
 """What a fleet may be able to do, and what that means."""
-GROUND, AIR, JOINS, HOLDS, RETURNS, CHARGES, BATTERY, RESUMES = ABILITIES
+GROUND, AIR, JOINS, HOLDS, RETURNS, CHARGES, BATTERY, RESUMES, LEASED = ABILITIES
 
 
 @record

@@ -204,11 +204,12 @@ class Live:
         self._robots, self._recorder, self._stood = fleet, recorder, False
         travel = travel_of(mission, robot_paths)
         replan, self._standing = planning_of(mission, request.duty, request.planning, travel, seed, repeatable=False)
+        way = way_of(mission, robot_paths)
         self.executor = Executor(
             mission,
             replace(plan, ignored=request.ignore),
             self._fleet.ports,
-            way=way_of(mission, robot_paths),
+            way=way,
             travel=travel,
             replan=replan,
             observer=recorder,
@@ -219,7 +220,7 @@ class Live:
             on_doors=lambda closed: None if manager is None else manager.close(closed),
             leader=manager,
         )
-        for robot, task, reason in refusals_of(fleet, mission):
+        for robot, task, reason in refusals_of(fleet, mission, plan, way):
             self.executor.refuse(robot, task, reason)
         if manager is not None:
             manager.expect(self.executor.outlook)

@@ -98,6 +98,13 @@ def _command(text: str | None) -> Callable[[str], object] | None:
     "--reach", "reach_m", default=2.0, metavar="METRES", help="How far east each robot is sent.", show_default=True
 )
 @click.option(
+    "--lease-reach",
+    "lease_reach_m",
+    default=0.0,
+    metavar="METRES",
+    help="How far east of its start the first robot may drive, to see whether it stops when orders are not renewed.",
+)
+@click.option(
     "--silence", metavar="COMMAND", help="Lets {robot} fall silent, such as 'ssh {robot} pkill -STOP driver'."
 )
 @click.option("--wake", metavar="COMMAND", help="Lets {robot} answer again.")
@@ -108,6 +115,7 @@ def command(
     setting: tuple[str, ...],
     mission: str | None,
     reach_m: float,
+    lease_reach_m: float,
     silence: str | None,
     wake: str | None,
     without: tuple[str, ...],
@@ -127,6 +135,7 @@ def command(
             settings=settings,
             mission=there,
             reach_m=reach_m,
+            lease_reach_m=lease_reach_m,
             silence=_command(silence),
             wake=_command(wake),
         )

@@ -11,7 +11,8 @@ from muster.mission.errors import MusterError
 from muster.mission.model import Robot
 from muster.mission.records import key_of, required, specified
 from muster.mission.value_types import Text
-from muster.running.fleet_type import BATTERY, HOLDS, RESUMES
+from muster.running.fleet_type import BATTERY, HOLDS, LEASED, RESUMES
+from muster_robots.conformance.leases import orders_age
 from muster_robots.conformance.stand import (
     FRESH_S,
     NEAR_M,
@@ -45,6 +46,8 @@ class Clause:
         Whether a robot must be made silent.
     several : bool
         Whether it needs two robots.
+    has_leases : bool
+        Whether it needs the room in which leases are tested.
     """
 
     words: str
@@ -52,6 +55,7 @@ class Clause:
     ability: str = ""
     silences: bool = False
     several: bool = False
+    has_leases: bool = False
 
 
 def settings_are_refused(stand: Stand) -> str:
@@ -372,5 +376,6 @@ CLAUSES: Mapping[str, Clause] = {
     "prompt": Clause("a silent robot holds nobody up", silence_holds_nobody_up, silences=True),
     "again": Clause("a robot that answers again takes orders", a_robot_is_heard_again, silences=True),
     "restart": Clause("a run goes on from where robots are", a_run_is_resumed, ability=RESUMES),
+    "lease": Clause("orders that nobody renews end", orders_age, ability=LEASED, has_leases=True),
 }
 """What is tested, in this order, by name."""

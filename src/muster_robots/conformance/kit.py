@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Literal
@@ -76,6 +77,9 @@ def _excuse(stand: Stand, clause: Clause, *, opens: bool) -> _Seen | None:
         return "not tried", "expected how a robot falls silent and answers again (--silence, --wake)"
     if clause.several and len(stand.mission.robots) < 2:
         return "not tried", "expected a mission with two robots"
+    if clause.has_leases and stand.lease_reach_m < stand.lease_room_m:
+        room_m = math.ceil(stand.lease_room_m)
+        return "not tried", f"expected {room_m} m free east of {stand.mission.robots[0].id} (--lease-reach {room_m})"
     return None
 
 

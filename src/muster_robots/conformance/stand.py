@@ -18,6 +18,7 @@ from muster.mission.system.clock import TIME_ROUNDING_S
 from muster.motion.kinematics.registry import limits_of
 from muster.motion.port import Place, Telemetry, Waypoint
 from muster.running.fleet_type import FleetType
+from muster_robots.goal_fleet import LEASE_S
 
 NEAR_M = 0.5
 """Distance to a place at which a robot counts as there, in metres."""
@@ -28,6 +29,8 @@ STILL_M = 0.1
 LATENCY_S = 1.0
 """Seconds until a robot does what it is told, and until that is reported."""
 _STEP_S = 0.1
+_LEASE_MARGIN_S = 5.0
+"""Seconds of driving beside two leases: the robot is watched for longer than one, and may brake late."""
 
 
 class LackingError(Exception):
@@ -48,10 +51,14 @@ class Stand:
         Whose robots are moved; they stand at their positions.
     reach_m : float, default 2
         How far each robot is sent, east of its position, in metres; robots that fly are sent as far up, too.
+    lease_reach_m : float, default 0
+        How far east of its position the first robot may drive, in metres, for the clause of leases.
     silence, wake : callable, optional
         Let a robot, by its id, fall silent, and answer again.
     watch : callable
         Wall-clock seconds, by which calls that take too long are noticed.
+    idle : callable
+        Lets wall-clock seconds go by, in which the fleet is not open.
     ends_s : float, default 3
         Seconds that threads of a closed fleet may take to end.
     """
@@ -60,9 +67,11 @@ class Stand:
     settings: Any
     mission: Mission
     reach_m: float = 2.0
+    lease_reach_m: float = 0.0
     silence: Callable[[str], object] | None = None
     wake: Callable[[str], object] | None = None
     watch: Callable[[], float] = time.monotonic
+    idle: Callable[[float], object] = time.sleep
     ends_s: float = 3.0
     _there: Mission = field(init=False)
 
@@ -86,6 +95,26 @@ class Stand:
                 trial.fleet.stop()
                 self._there = trial.where_robots_stand(self._there)
             trial.fleet.close()
+
+    @contextmanager
+    def abandoned(self) -> Iterator[Trial]:
+        """Open the fleet for a clause, and close it without a word to robots, as if Muster were killed."""
+        trial = Trial(self, self.open(self._there))
+        try:
+            yield trial
+        except BaseException:
+            with suppress(Exception):  # the clause says what went wrong
+                trial.fleet.stop()
+            raise
+        finally:
+            with suppress(Exception):
+                self._there = trial.where_robots_stand(self._there)
+            trial.fleet.close()
+
+    @property
+    def lease_room_m(self) -> float:
+        """How far the first robot may get in the clause of leases, in metres: two leases of driving, and more."""
+        return self.reach_m + self.mission.robots[0].speed_mps * (2 * LEASE_S + _LEASE_MARGIN_S)
 
     def is_declared(self, ability: str) -> bool:
         """Whether the fleet declares an ability."""
@@ -232,16 +261,21 @@ class Trial:
                 raise LackingError(f"{robot}: {gone_m:.2f} m farther after {what}; expected at most {most_m:.2f} m")
         return f"{robot} stopped after {math.dist(at, said.position):.2f} m"
 
+    def lease_target(self, robot: str) -> Place:
+        """Return the far end of the room in which leases are tested."""
+        x, y, z = self.start(robot)
+        return (x + self.stand.lease_room_m, y, z)
+
     def target(self, robot: str) -> Place:
         """Return where a robot is sent next: east of its start, or back, whichever is farther."""
-        x, y, z = self._start(robot)
+        x, y, z = self.start(robot)
         home, there = (x, y, z), (x + self.stand.reach_m, y, z)
         here = self.said(robot).position
         return there if math.dist(here, home) < math.dist(here, there) else home
 
     def other(self, robot: str, place: Place) -> Place:
         """Return the other of the two places to which a robot is sent."""
-        x, y, z = self._start(robot)
+        x, y, z = self.start(robot)
         return (x, y, z) if place != (x, y, z) else (x + self.stand.reach_m, y, z)
 
     def where_robots_stand(self, mission: Mission) -> Mission:
@@ -253,7 +287,8 @@ class Trial:
             robots.append(replace(robot, position=place))
         return replace(mission, robots=tuple(robots))
 
-    def _start(self, robot: str) -> Place:
+    def start(self, robot: str) -> Place:
+        """Return where a robot stands in the mission; if it flies, so far up as it is sent."""
         body = self._bodies[robot]
         position = body.position
         up_m = self.stand.reach_m if body.kind == "air" and len(position) > 2 else 0.0

@@ -2,17 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from muster.motion.port import Waypoint
 from muster_robots.follower import Follower
 from muster_robots.mavlink.drone import Drone
 from muster_robots.mavlink.faults import FaultError, Kind
 from muster_robots.mavlink.mission_items import route_of
+from muster_robots.mavlink.own_limits import read_limits
 from muster_robots.mavlink.position_targets import TURNED_RAD
 from muster_robots.mavlink.procedures import armed, climb, disarmed, started, upload
 from muster_robots.mavlink.procedures import mode as change_mode
 from muster_robots.mavlink.requests import Script, pause
+
+
+def with_limits(drone: Drone) -> Script:
+    """Read what limits where a drone may fly."""
+    if not drone.telemetry.armed:
+        drone.home = drone.telemetry.place
+    earth, offboard = drone.telemetry.earth, drone.settings.offboard
+    to_map = None if earth is None else earth.to_map
+    yield from read_limits(drone.target, drone.kind, drone.limits, to_map, offboard=offboard)
+
+
+def after_limits(
+    drone: Drone, waypoints: Sequence[Waypoint], way: Callable[[Drone, Sequence[Waypoint]], Script]
+) -> Script:
+    """Fly way points if the limits of the autopilot allow them; these are read first if the drone was silent before.
+
+    Raises
+    ------
+    FaultError
+        if they do not.
+    """
+    if not drone.limits.is_read:
+        yield from with_limits(drone)
+    places = [waypoint.position for waypoint in waypoints]
+    if refusal := drone.refusal(places, drone.telemetry.place):
+        raise FaultError(Kind.OUTSIDE_FENCE, refusal)
+    yield from way(drone, waypoints)
 
 
 def mission(drone: Drone, waypoints: Sequence[Waypoint]) -> Script:

@@ -15,6 +15,7 @@ from muster_robots.follower import Follower
 from muster_robots.mavlink.autopilots import Autopilot
 from muster_robots.mavlink.dialect import Message
 from muster_robots.mavlink.mission_items import Route
+from muster_robots.mavlink.own_limits import OwnLimits
 from muster_robots.mavlink.telemetry import DroneTelemetry
 
 _SILENT_S = 5.0
@@ -63,7 +64,7 @@ class Drone:
     follower: Follower | None = None  # or what leads it
     passed: int = 0
     home: Place | None = None  # where it stood before it was armed
-    parameters: dict[str, float] = field(default_factory=dict)  # that limit where it may fly, as far as it has them
+    limits: OwnLimits = field(default_factory=OwnLimits)  # that its autopilot sets
 
     @property
     def kind(self) -> Autopilot:
@@ -140,6 +141,18 @@ class Drone:
             held = flies and telemetry.mode == kind.hold and not self.has_passed_all
             return Holder.STATION if held else Holder.MUSTER
         return Holder.MUSTER if busy and telemetry.mode in (kind.back, kind.land) else Holder.STATION
+
+    def refusal(self, places: Sequence[Place], here: Place | None = None) -> str:
+        """Return why places, in the order of flight, or legs to them are outside the limits of its autopilot.
+
+        Parameters
+        ----------
+        places : sequence of Place
+            In the map frame.
+        here : Place, optional
+            Where the first leg begins; by default that leg is not looked at.
+        """
+        return self.limits.refusal(self.autopilot, self.home or self.telemetry.start, places, here)
 
     def forget_order(self) -> None:
         """It has no way points any more."""

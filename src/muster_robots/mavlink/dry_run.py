@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission, Robot, Task
 from muster.mission.plan import Plan
-from muster.motion import actions
-from muster.motion.actions import Impossible
-from muster.motion.port import Place, Waypoint
+from muster.motion.port import Waypoint
 from muster_robots.mavlink.fleet import MavlinkFleet
 from muster_robots.mavlink.frames import DEGREES_E7
+from muster_robots.mavlink.planned_legs import Way, order_of
 from muster_robots.mavlink.session import Session
 
 
@@ -30,10 +29,6 @@ class Line:
 
     def as_dict(self) -> dict[str, Any]:
         return asdict(self)
-
-
-Way = Callable[[Robot, Place, Place], Sequence[Waypoint] | None]
-"""What a robot passes from one place to another, the last included; None where there is no way."""
 
 
 def lines_of(mission: Mission, plan: Plan, fleet: MavlinkFleet, way: Way) -> list[Line]:
@@ -59,17 +54,11 @@ def _route(robot: Robot, tasks: Sequence[Task], fleet: MavlinkFleet, way: Way) -
     session = fleet.sessions[robot.id]
     here = session.drone.telemetry.start
     for task in tasks:
-        doing = actions.plan(task, robot)
-        if isinstance(doing, Impossible):
-            raise ParameterError(f"plan: {robot.id} does {task.id}; {doing.reason}")
-        waypoints: list[Waypoint] = []
-        for waypoint in doing.waypoints:
-            there = way(robot, here, waypoint.position)
-            if there is None:
-                raise ParameterError(f"plan: {robot.id} does {task.id}; there is no way for it")
-            waypoints += [*there[:-1], waypoint]
-            here = waypoint.position
-        flown = session.drone.flown(waypoints)
+        order = order_of(task, robot, here, way)
+        if isinstance(order, str):
+            raise ParameterError(f"plan: {robot.id} does {task.id}; {order}")
+        here = order[-1].position
+        flown = session.drone.flown(order)
         refusal = session.fence(flown[0].position, flown)
         if refusal:
             raise ParameterError(f"{robot.id}: task {task.id}: {refusal}")

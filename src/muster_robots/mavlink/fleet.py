@@ -16,10 +16,9 @@ from muster.execution.fleet import Failure
 from muster.execution.robots.monitor import Limits
 from muster.mission.errors import NetworkError, ParameterError
 from muster.mission.model import Event, Mission, Robot
+from muster.mission.plan import Plan
 from muster.mission.system.clock import Clock, SystemClock
 from muster.mission.value_types import shown
-from muster.motion import actions
-from muster.motion.actions import Impossible
 from muster.motion.port import Place, RobotPort, Telemetry, Waypoint
 from muster_robots.fleet_settings import FlightSettings
 from muster_robots.mavlink.autopilots import AtEnd
@@ -28,6 +27,7 @@ from muster_robots.mavlink.faults import Fault, Kind
 from muster_robots.mavlink.fence import fences_of, no_fence
 from muster_robots.mavlink.frames import GlobalFrame, LocalFrame, StartFrame
 from muster_robots.mavlink.links import Link, links_of
+from muster_robots.mavlink.planned_legs import Way, planned_refusals, show_fence
 from muster_robots.mavlink.session import Session
 from muster_robots.mavlink.telemetry import DroneTelemetry
 
@@ -148,28 +148,26 @@ class MavlinkFleet:
                 )
             if not again:
                 self._require_near(session.drone)
-        self._read_limits()
+        self._read_limits(may_refuse=not again)
         if again and self._settings.arm:
             self._tell_all(Session.take_over)
         if self._speaker is not None:
             self._speaker.start()
 
-    def _read_limits(self) -> None:
-        """Read what limits each drone by the parameters of its autopilot, before it gets an order."""
+    def _read_limits(self, *, may_refuse: bool) -> None:
+        """Read the limits that the autopilot of each drone sets, before the drone gets an order; see `show_fence`."""
         self._tell_all(Session.read_limits)
         while any(session.busy for session in self.sessions.values()):
             self._go_on()
+        for session in self.sessions.values():
+            show_fence(session.drone, may_refuse=may_refuse)
 
-    def refusals(self, mission: Mission) -> Iterator[tuple[str, str, str]]:
-        """For each task that an autopilot would refuse to fly: the robot, the task, and why."""
+    def refusals(self, mission: Mission, plan: Plan, way: Way) -> Iterator[tuple[str, str, str]]:
+        """For each task that an autopilot would refuse to fly: the robot, the task, and why; see `refusals_of`."""
         for robot in mission.robots:
             session = self.sessions[robot.id]
-            for task in mission.tasks if session.drone.parameters else ():
-                doing = actions.plan(task, robot)
-                if not isinstance(doing, Impossible):
-                    flown = session.drone.flown(doing.waypoints)
-                    if why := session.refusal([waypoint.position for waypoint in flown]):
-                        yield robot.id, task.id, f"{Kind.OUTSIDE_FENCE.words}: {why}"
+            if session.drone.limits.is_read:
+                yield from planned_refusals(session.drone, mission, plan, way)
 
     def finish(self, at_end: AtEnd, halted: Callable[[], bool]) -> None:
         """Give all drones the last order, and wait until they have landed; at `halted` they hover. `hold`: nothing."""

@@ -11,7 +11,7 @@ from muster.mission.errors import ParameterError
 from muster.motion.port import Place, Telemetry, Waypoint
 from muster_robots.custody import Custody, Holder, Standing, Wants
 from muster_robots.mavlink.autopilots import AtEnd, autopilot_of
-from muster_robots.mavlink.commands import guided, into, mission, stand_down
+from muster_robots.mavlink.commands import after_limits, guided, into, mission, stand_down, with_limits
 from muster_robots.mavlink.dialect import Message, mavlink
 from muster_robots.mavlink.drone import Drone, UnheardOrder
 from muster_robots.mavlink.fault_detection import FaultDetector
@@ -25,7 +25,6 @@ from muster_robots.mavlink.faults import (
     Reaction,
     StatusText,
 )
-from muster_robots.mavlink.own_limits import read_parameters, refusal_of
 from muster_robots.mavlink.position_targets import EVERY_S, position_target
 from muster_robots.mavlink.procedures import telemetry_requests
 from muster_robots.mavlink.requests import RequestSequence, Script
@@ -127,17 +126,9 @@ class Session:
         return self._order
 
     def read_limits(self, now: float) -> None:
-        """Ask for the parameters that limit where it may fly; only with leave to arm."""
+        """Ask for what limits where it may fly; only with leave to arm."""
         if self.drone.settings.arm and self.drone.autopilot is not None:
-            if not self.drone.telemetry.armed:
-                self.drone.home = self.drone.telemetry.place
-            script = read_parameters(self.drone.target, self.drone.kind, self.drone.parameters)
-            self._requests = RequestSequence(script, self._say, now)
-
-    def refusal(self, places: Sequence[Place]) -> str:
-        """Why places, in the order of flight, are outside the limits of its autopilot; empty if they are not."""
-        home = self.drone.home or self.drone.telemetry.start
-        return refusal_of(self.drone.autopilot, self.drone.parameters, home, places)
+            self._requests = RequestSequence(with_limits(self.drone), self._say, now)
 
     def hold(self, now: float) -> int:
         """Let it stay where it is, if it flies, and is ours; on the ground it is not left armed."""
@@ -331,14 +322,13 @@ class Session:
             self.custody.let_go(self.drone.seen(busy=False))
             self._change_standing(self.custody.standing, now)
             return
-        refusal = self.fence(here, waypoints) or self.refusal([waypoint.position for waypoint in waypoints])
-        if refusal:
+        if refusal := self.fence(here, waypoints):
             raise FaultError(Kind.OUTSIDE_FENCE, refusal)
         if not waypoints:
             return
         self._fault_detector.require_charge()
         way = guided if self.drone.settings.offboard else mission
-        self._begin(way(self.drone, waypoints), now)
+        self._begin(after_limits(self.drone, waypoints, way), now)
 
     def _may_interrupt(self, fault: Fault, at_end: AtEnd) -> bool:
         """Whether the reaction to a fault may be broken off: to hover in favour of an end, to return never."""

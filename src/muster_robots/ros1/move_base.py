@@ -27,6 +27,7 @@ _ENDS: dict[int, Any] = {
     GoalStatus.REJECTED: "rejected",
     GoalStatus.LOST: "lost",
 }
+_UNDER_WAY = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING, GoalStatus.RECALLING)
 _number = itertools.count(1)
 
 
@@ -49,6 +50,8 @@ class MoveBaseNavigator:
         self._now, self._lock = now, lock
         self._heard_s: float | None = None
         self._goal: _MoveBaseNavigation | None = None
+        self._own = f"{rospy.get_name()}-"  # begins the ids of goals, those of an earlier run too
+        self._foreign = ""
         kinds = move_base_types()
         self._kind = kinds.goal
         self._goals = rospy.Publisher(f"{action}/goal", kinds.goal, queue_size=10)
@@ -66,12 +69,17 @@ class MoveBaseNavigator:
             fresh = self._heard_s is not None and self._now() - self._heard_s < _STATES_LAST_S
         return fresh and all(link.get_num_connections() > 0 for link in (self._goals, self._cancels))
 
+    @property
+    def foreign(self) -> str:
+        """See `navigation.Navigator`."""
+        return self._foreign if self.ready else ""
+
     def go(self, goal: Any) -> Navigation[Any]:
         """See `navigation.Navigator`."""
         stamp = rospy.Time.now()
         message = self._kind()
         message.header.stamp = message.goal_id.stamp = stamp
-        message.goal_id.id = f"{rospy.get_name()}-{next(_number)}-{stamp.to_sec():.3f}"
+        message.goal_id.id = f"{self._own}{next(_number)}-{stamp.to_sec():.3f}"
         message.goal.target_pose = goal
         with self._lock:
             self._goal = _MoveBaseNavigation(message.goal_id.id, self._cancels, self._now() + _ACCEPTS_WITHIN_S)
@@ -86,6 +94,8 @@ class MoveBaseNavigator:
     def _hear_states(self, message: Any) -> None:
         with self._lock:
             self._heard_s = self._now()
+            under_way = (one.goal_id.id for one in message.status_list if one.status in _UNDER_WAY)
+            self._foreign = next((name for name in under_way if not name.startswith(self._own)), "")
             if self._goal is not None:
                 self._goal.hear_states({one.goal_id.id: one for one in message.status_list}, self._heard_s)
 

@@ -123,6 +123,12 @@ def hear(topic: str, kind: Any, do: Callable[..., None], **how: Any) -> Any:
     return rospy.Subscriber(topic, kind, heard, **how)
 
 
+def listeners(publisher: Any) -> int:
+    """Return how many subscribers in other nodes a publisher has: a node that hears its own topic is one of its own."""
+    own = rospy.get_name()
+    return sum(receiver != own for _, receiver, *_ in publisher.impl.get_stats_info())
+
+
 def leave(within_s: float = 2.0) -> None:
     """Unregister at the ROS master, after time for the last messages to arrive; does not wait for a hanging master."""
     time.sleep(0.2)

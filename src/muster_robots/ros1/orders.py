@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
 from muster.motion.port import Place, Telemetry, Waypoint
-from muster_robots.navigation import Ended, NavigationGoals
+from muster_robots.navigation import PURSUED_S, Ended, NavigationGoals
 from muster_robots.pose_port import goal_heading
 from muster_robots.ros1.message_conversion import pose_stamped, twist_of
-from muster_robots.ros1.node import publish
+from muster_robots.ros1.node import hear, listeners, publish
 from muster_robots.ros1.ros import PoseStamped, Twist, rospy
 from muster_robots.steering import STILL, Velocity
 
@@ -75,6 +75,15 @@ class Orders(Protocol):
         """Whether somebody receives them."""
         ...
 
+    @property
+    def foreign(self) -> str:
+        """Whose goal the robot pursues, if that is not Muster's, in words; empty if none is known."""
+        ...
+
+    def leave(self) -> None:
+        """Give up the goal for that of somebody else, which stays as it is."""
+        ...
+
     def begin(self, now_s: float) -> None:
         """Note that the robot was sent somewhere."""
         ...
@@ -126,7 +135,7 @@ def orders_for(drive: Drive, topics: str, frame: str, now: Callable[[], float], 
 class VelocityOrders:
     """Velocities on `<robot>/cmd_vel`, which are said all the time."""
 
-    at_rest, reports = True, False
+    at_rest, reports, foreign = True, False, ""
 
     def __init__(self, topics: str) -> None:
         self.expected = f"a subscriber of {topics}/cmd_vel (geometry_msgs/Twist)"
@@ -145,6 +154,9 @@ class VelocityOrders:
             self._stood_s = course.now_s
         if course.now_s - self._stood_s <= _TOLD_STILL_S:
             publish(self._publisher, twist_of(course.velocity))
+
+    def leave(self) -> None:
+        """There is no goal."""
 
     def repeat(self) -> None:
         """The next velocity comes anyway."""
@@ -182,6 +194,9 @@ class _Goals(ABC):
             self._give(pose_stamped(self._frame, course.place, goal_heading(aim, course.said)))
             self._given, self._aim = course.at, aim.position
 
+    def leave(self) -> None:
+        self._given = None
+
     def repeat(self) -> None:
         self._given = None
 
@@ -205,21 +220,33 @@ class GoalOrders(_Goals):
 
     def __init__(self, topic: str, frame: str) -> None:
         super().__init__(frame)
+        self.foreign = ""
+        self._topic, self._is_foreign, self._foreign_s = topic, False, -math.inf
         self.expected = f"a subscriber of {topic} (geometry_msgs/PoseStamped)"
         self._publisher = rospy.Publisher(topic, PoseStamped, queue_size=1, latch=True)
+        self._others = hear(topic, PoseStamped, self._hear_goal, queue_size=10)
 
     @property
     def received(self) -> bool:
-        return bool(self._publisher.get_num_connections() > 0)
+        return listeners(self._publisher) > 0
 
     def speak(self, course: Course) -> None:
+        if self._is_foreign:
+            self._is_foreign, self._foreign_s = False, course.now_s
+        self.foreign = f"a goal on {self._topic} is not Muster's" if course.now_s < self._foreign_s + PURSUED_S else ""
         self._follow(course)
 
     def poses(self) -> list[Any]:
         return []
 
     def close(self) -> None:
+        self._others.unregister()
         self._publisher.unregister()
+
+    def _hear_goal(self, goal: Any) -> None:
+        """Take in a goal on the topic, which may be one of Muster's."""
+        if goal._connection_header["callerid"] != rospy.get_name():
+            self._is_foreign = True
 
     def _give(self, goal: Any) -> None:
         publish(self._publisher, goal)
@@ -247,6 +274,14 @@ class ActionOrders(_Goals):
     @property
     def received(self) -> bool:
         return self._goals.ready
+
+    @property
+    def foreign(self) -> str:
+        return self._goals.foreign
+
+    def leave(self) -> None:
+        super().leave()
+        self._goals.leave()
 
     def speak(self, course: Course) -> Ended | None:
         ended = self._goals.hear(course.now_s, under_way=course.under_way)

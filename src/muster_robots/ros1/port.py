@@ -144,6 +144,8 @@ class Ros1Port:
         said = self._last_word
         assert said is not None  # or nobody would steer it
         now, follower = self._clock.unpaused_s, self._follower
+        if foreign := self._orders.foreign:
+            self._leave(foreign)
         under_way = follower.aim is not None and not follower.stays
         place = self._goal(said.position if steered.aim is None else steered.aim.position)
         at = (follower.order, follower.passed)
@@ -169,9 +171,9 @@ class Ros1Port:
         return [here, tf_of(self._frame.name, f"{OWN}{self.robot}/goal", self._goal(aim.position), aim.heading or 0.0)]
 
     def stand(self) -> None:
-        """Stand where it is, at once, if it was ever sent anywhere."""
+        """Stand where it is, at once, if it was ever sent anywhere, and nobody else has it."""
         with self._lock:
-            if self._commanded:
+            if self._commanded and not self.custody.is_taken:
                 said = self._last_word
                 here = (0.0, 0.0, 0.0) if said is None else self._goal(said.position)
                 self._orders.stand(self._clock.unpaused_s, here, said)
@@ -191,9 +193,12 @@ class Ros1Port:
             self.stand()
 
     def _leave(self, why: str) -> None:
-        """Leave it to somebody else, who has it."""
+        """Leave it to somebody else, who has it, and note that again for as long as it is so."""
+        is_new = not self.custody.is_taken
         self.custody.take(self._clock.unpaused_s, Holder.STATION, why)
-        self._on_pass()
+        if is_new:
+            self._orders.leave()
+            self._on_pass()
 
     def _take_end(self, ended: Ended, said: Telemetry) -> None:
         """Take in that its navigation has arrived, or why it does not get there."""

@@ -49,6 +49,7 @@ class DdsMiddleware:
         except self._dds.error as error:
             raise NetworkError(f"DDS domain {number}: {line_of(error)}; see CYCLONEDDS_URI") from None
         self.error = self._dds.error
+        self._others: list[DdsReader[Any]] = []
         self.publications = Endpoints(self._dds.publications(self._participant))
         self.subscriptions = Endpoints(self._dds.subscriptions(self._participant))
 
@@ -59,6 +60,12 @@ class DdsMiddleware:
     def reader(self, topic: str, message: type[M], *, latched: bool = False) -> DdsReader[M]:
         """See `Middleware`."""
         return DdsReader(self._dds, self._participant, topic, message, latched=latched or is_latched(topic))
+
+    def others(self, topic: str, message: type[M]) -> DdsReader[M]:
+        """See `Middleware`: neither matches the writers of this participant, nor counts as their listener."""
+        reader = DdsReader(self._dds, self._participant, topic, message, latched=False, ignores_own=True)
+        self._others.append(reader)
+        return reader
 
     def navigator(self, action: str) -> Navigator[PoseStamped]:
         """See `Middleware`."""
@@ -110,15 +117,21 @@ class DdsMiddleware:
     def decoded(self, message: type[M], reader: Any) -> list[tuple[M, bytes]]:
         """Return what a reader has received, as messages and as bytes."""
         samples = reader.take(KEPT)
-        return [(from_foreign(message, _idl(message).deserialize(one.data)), one.data) for one in samples if one.data]
+        return [
+            (from_foreign(message, _idl(message).deserialize(one.data)), one.data)
+            for one in samples
+            if getattr(one, "data", b"")
+        ]
 
     def wait(self, seconds: float) -> None:
         """See `Middleware`: Cyclone DDS receives in threads of its own."""
         time.sleep(seconds)
 
     def close(self) -> None:
-        """See `Middleware`."""
+        """See `Middleware`. Readers of what others publish end now: to others they count as receivers of orders."""
         self._participant = None
+        for reader in self._others:
+            reader.close()
 
 
 class DdsWriter(Generic[M]):
@@ -142,12 +155,28 @@ class DdsWriter(Generic[M]):
 class DdsReader(Generic[M]):
     """See `middleware.Reader`."""
 
-    def __init__(self, dds: _Dds, participant: Any, topic: str, message: type[M], *, latched: bool) -> None:
+    def __init__(
+        self,
+        dds: _Dds,
+        participant: Any,
+        topic: str,
+        message: type[M],
+        *,
+        latched: bool,
+        ignores_own: bool = False,
+    ) -> None:
         self._message = message
-        self._reader = dds.reader(participant, _dds_topic(topic), _idl(message), latched=latched)
+        if ignores_own:
+            self._reader = dds.others(participant, _dds_topic(topic), _idl(message))
+        else:
+            self._reader = dds.reader(participant, _dds_topic(topic), _idl(message), latched=latched)
+
+    def close(self) -> None:
+        """Hear no more."""
+        self._reader = None
 
     def take(self) -> list[M]:
-        samples = self._reader.take(KEPT)
+        samples = () if self._reader is None else self._reader.take(KEPT)
         kind = _idl(self._message)
         return [from_foreign(self._message, sample) for sample in samples if isinstance(sample, kind)]
 
@@ -164,6 +193,7 @@ class _Dds:
         self._publishing = qos.Qos(old, kept, policy.Reliability.Reliable(10**8))
         self._hearing = qos.Qos(old, kept, policy.Reliability.BestEffort)
         lasting = (policy.Reliability.Reliable(10**8), policy.Durability.TransientLocal)
+        self._hearing_others = qos.Qos(old, kept, policy.Reliability.BestEffort, policy.IgnoreLocal.Participant)
         self._hearing_latched = qos.Qos(old, kept, *lasting)
         self._qos: Any = qos
         self._calling = (old, kept, policy.Reliability.Reliable(10**8))
@@ -182,6 +212,10 @@ class _Dds:
         quality = self._hearing_latched if latched else self._hearing
         quality = self._service(identity) if identity else quality
         return self._reader(participant, self._topic(participant, topic, kind), qos=quality)
+
+    def others(self, participant: Any, topic: str, kind: Any) -> Any:
+        """Return a reader that ignores the writers of its own participant."""
+        return self._reader(participant, self._topic(participant, topic, kind), qos=self._hearing_others)
 
     def publications(self, participant: Any) -> Any:
         """The reader of what others publish, and how (DDS 1.4, 2.2.5: DCPSPublication)."""

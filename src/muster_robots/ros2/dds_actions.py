@@ -39,6 +39,12 @@ from muster_robots.ros2.middleware import Reader, line_of
 M = TypeVar("M", bound=Message)
 _STATUS: dict[int, Any] = {4: "succeeded", 5: "canceled", 6: "aborted"}
 """By action_msgs/GoalStatus."""
+_UNDER_WAY = (1, 2, 3)
+"""Accepted, executing, cancelling: by action_msgs/GoalStatus."""
+_OWN = b"muster"
+"""Begins the ids of goals, so that those of an earlier run are known, too."""
+_FEEDBACK_LASTS_S = 1.0
+"""Seconds after feedback in which its goal counts as under way; Nav2 sends feedback several times a second."""
 _ANSWERS_WITHIN_S = 5.0
 """Seconds within which a server accepts or rejects a goal, or it was lost on the way."""
 _RESULT_WITHIN_S = 1.0
@@ -88,6 +94,19 @@ class DdsNavigator:
         self._feedback = middleware.reader(f"{self._action}/feedback", FeedbackMessage)
         self._states = middleware.reader(f"{self._action}/status", GoalStatusArray)
         self._goal: _DdsNavigation | None = None
+        self._foreign: UUID | None = None  # by the states of goals
+        self._foreign_fed: tuple[UUID, float] | None = None  # by feedback, and when that was heard
+
+    @property
+    def foreign(self) -> str:
+        """See `navigation.Navigator`."""
+        self.hear()
+        if not self.sends.servers:
+            self._foreign = self._foreign_fed = None
+        if self._foreign_fed is not None and time.monotonic() > self._foreign_fed[1] + _FEEDBACK_LASTS_S:
+            self._foreign_fed = None
+        found = self._foreign or (self._foreign_fed and self._foreign_fed[0])
+        return "" if found is None else found.uuid.hex()
 
     @property
     def unfit(self) -> str:
@@ -107,6 +126,13 @@ class DdsNavigator:
     def hear(self) -> None:
         """Take in feedback and states."""
         feedback, states = self._feedback.take(), self._states.take()
+        for array in states:
+            under_way = (one.goal_info.goal_id for one in array.status_list if one.status in _UNDER_WAY)
+            self._foreign = next((one for one in under_way if not _is_own(one)), None)
+            self._foreign_fed = None
+        for one in feedback:
+            if not _is_own(one.goal_id):
+                self._foreign_fed = one.goal_id, time.monotonic()
         if self._goal is not None:
             self._goal.hear(feedback, states)
 
@@ -116,7 +142,7 @@ class _DdsNavigation:
 
     def __init__(self, navigator: DdsNavigator, goal: PoseStamped) -> None:
         self._navigator = navigator
-        self._id = UUID(os.urandom(16))
+        self._id = UUID(_OWN + os.urandom(16 - len(_OWN)))
         self._poses: list[PoseStamped] = []
         self._outcome: Outcome | None = None
         self._accepted = self._cancelled = False
@@ -184,6 +210,10 @@ class _DdsNavigation:
         except NetworkError as error:
             self._outcome = Outcome("aborted", str(error))
             return None
+
+
+def _is_own(goal: UUID) -> bool:
+    return goal.uuid.startswith(_OWN)
 
 
 class _Service:

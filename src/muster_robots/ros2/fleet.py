@@ -233,7 +233,9 @@ class Ros2Fleet:
         if self._give == "nav2":
             action = f"{topics}/navigate_to_pose"
             return Nav2Goals(self._middleware.navigator(action), action)
-        return PoseGoals(self._middleware.writer(f"{topics}/goal_pose", PoseStamped), f"{topics}/goal_pose")
+        topic = f"{topics}/goal_pose"
+        others = self._middleware.others(topic, PoseStamped)
+        return PoseGoals(self._middleware.writer(topic, PoseStamped), topic, others)
 
     def _looks(self, names: Mapping[str, str]) -> Ros2Newcomers:
         def reach(robot: Robot) -> Ros2Port:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Protocol
 
-from muster_robots.navigation import Ended, NavigationGoals, Navigator
+from muster_robots.navigation import PURSUED_S, Ended, NavigationGoals, Navigator
 from muster_robots.ros2.message_types import PoseStamped
-from muster_robots.ros2.middleware import Writer
+from muster_robots.ros2.middleware import Reader, Writer
 
 
 class Goals(Protocol):
@@ -34,6 +35,15 @@ class Goals(Protocol):
         """Whether nothing that was given is under way, as far as that is said."""
         ...
 
+    @property
+    def foreign(self) -> str:
+        """Whose goal the robot pursues, if that is not Muster's, in words; empty if none is known."""
+        ...
+
+    def leave(self) -> None:
+        """Give up the goal for that of somebody else, which stays as it is."""
+        ...
+
     def give(self, goal: PoseStamped) -> None:
         """Let it go there, in place of where it goes now."""
         ...
@@ -58,12 +68,24 @@ class Goals(Protocol):
 
 
 class PoseGoals:
-    """Goals on a topic. They have no result: poses show when they are reached."""
+    """Goals on a topic. They have no result: poses show when they are reached.
+
+    Parameters
+    ----------
+    writer : Writer
+        Publishes them.
+    topic : str
+        The topic's name.
+    others : Reader, optional
+        Hears the goals of others on it; by default these are not known.
+    """
 
     at_rest, reports = True, False
     unfit = feedback = ""
 
-    def __init__(self, writer: Writer[PoseStamped], topic: str) -> None:
+    def __init__(self, writer: Writer[PoseStamped], topic: str, others: Reader[PoseStamped] | None = None) -> None:
+        self.foreign = ""
+        self._topic, self._others, self._foreign_s = topic, others, -math.inf
         self.expected = f"a subscriber of {topic} (geometry_msgs/PoseStamped)"
         self._writer = writer
 
@@ -71,6 +93,9 @@ class PoseGoals:
     def ready(self) -> bool:
         """Whether somebody subscribes."""
         return self._writer.listeners > 0
+
+    def leave(self) -> None:
+        """Nothing that was given is under way, as far as that is said."""
 
     def give(self, goal: PoseStamped) -> None:
         self._writer.write(goal)
@@ -82,6 +107,8 @@ class PoseGoals:
         return here is not None
 
     def hear(self, now: float, *, under_way: bool) -> Ended | None:
+        self._foreign_s = now if self._others is not None and self._others.take() else self._foreign_s
+        self.foreign = f"a goal on {self._topic} is not Muster's" if now < self._foreign_s + PURSUED_S else ""
         return None
 
     def poses(self) -> list[PoseStamped]:

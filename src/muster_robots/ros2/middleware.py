@@ -58,6 +58,10 @@ class Middleware(Protocol):
         """A subscriber of a topic; `latched`: of publishers alone that keep their last messages, and of these too."""
         ...
 
+    def others(self, topic: str, message: type[M]) -> Reader[M] | None:
+        """Return what hears the messages of others alone on a topic; None where they are not told from Muster's."""
+        ...
+
     def navigator(self, action: str) -> Navigator[PoseStamped]:
         """Who gives goals to an action (`/r_0/navigate_to_pose`).
 

@@ -170,6 +170,8 @@ class Ros2Port:
     def hear(self) -> bool:
         """Take in what has come, and give the next goal where one is reached; returns whether one was passed."""
         now = self._clock()
+        if foreign := self.goals.foreign:
+            self._leave(foreign)
         under_way = self._follower.aim is not None and not self._follower.stays
         ended = self.goals.hear(now, under_way=under_way)
         if ended is not None and under_way:
@@ -200,7 +202,9 @@ class Ros2Port:
         return self.custody.look(now, is_carried_out=is_done or not self.goals.at_rest)
 
     def _leave(self, why: str) -> None:
-        """Leave it to somebody else, who has it."""
+        """Leave it to somebody else, who has it, and note that again for as long as it is so."""
+        if not self.custody.is_taken:
+            self.goals.leave()
         self.custody.take(self._clock(), Holder.STATION, why)
         self.is_to_stay = False
 

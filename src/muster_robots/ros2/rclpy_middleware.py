@@ -69,6 +69,9 @@ class RclpyMiddleware:
         self._node.create_subscription(_class_of(message), topic, reader.hear, quality)
         return reader
 
+    def others(self, topic: str, message: type[M]) -> None:
+        """See `Middleware`: rclpy gives a node its own messages, too."""
+
     def navigator(self, action: str) -> RclpyNavigator:
         """See `Middleware`."""
         kind = _module("nav2_msgs.action", "install nav2_msgs").NavigateToPose
@@ -129,9 +132,9 @@ class RclpyReader(Generic[M]):
 
 
 class RclpyNavigator:
-    """See `navigation.Navigator`."""
+    """See `navigation.Navigator`. The goals of others are not known here: rclpy's client is told of its own alone."""
 
-    unfit = ""
+    unfit = foreign = ""
 
     def __init__(self, client: Any, kind: Any) -> None:
         self._client, self._kind = client, kind

@@ -50,7 +50,11 @@ class Yard:
     def __init__(self):
         self.clock = VirtualClock()
         self.bodies = {name: Body(place) for name, place in PLACES.items()}
-        self.orders, self._moved_s = [], 0.0
+        self.orders, self._moved_s, self.until_s = [], 0.0, math.inf
+
+    def renew(self, seconds):
+        self.move()
+        self.until_s = self.clock.now() + seconds
 
     def poses(self):
         self.move()
@@ -85,7 +89,8 @@ class Yard:
     def move(self):
         now = self.clock.now()
         for body in self.bodies.values():
-            body.drive(now - self._moved_s)
+            body.drive(max(0.0, min(now, self.until_s) - self._moved_s))
+            body.goal = body.goal if now < self.until_s else None
         self._moved_s = now
 
 
@@ -106,7 +111,7 @@ def stand_of(yard, *, fleet=GoalFleet, opens=None, **declared):
         return opened(yard, mission, settings, fleet)
 
     facts = {
-        "abilities": ("ground", "holds", "returns", "battery", "resumes"),
+        "abilities": ("ground", "holds", "returns", "battery", "resumes", "leased"),
         "settings": YardSettings,
         "claims": lambda settings: [f"robots of {settings.site}"],
         **declared,
@@ -117,6 +122,8 @@ def stand_of(yard, *, fleet=GoalFleet, opens=None, **declared):
         kind=kind,
         settings=kind.settings(site="yard") if kind.settings is YardSettings else kind.settings(),
         mission=Mission(robots=robots, tasks=(Task(id="t", position=(6.0, 1.0)),)),
+        lease_reach_m=30.0,
+        idle=yard.clock.advance,
         silence=yard.silence,
         wake=yard.wake,
         watch=yard.clock.now,
@@ -483,6 +490,54 @@ def reports_starts_when_it_is_opened_again():
     return stand_of(yard, opens=opens)
 
 
+def goes_on_without_renewals():
+    class Tireless(Yard):
+        def renew(self, seconds):
+            pass
+
+    return stand_of(Tireless())
+
+
+def stops_although_it_is_renewed():
+    class Impatient(Yard):
+        """Its robots take the order for what must be said again."""
+
+        def renew(self, seconds):
+            pass
+
+        def order(self, robot, goal):
+            super().order(robot, goal)
+            self.until_s = self.clock.now() + 8.0
+
+    return stand_of(Impatient())
+
+
+def renews_itself():
+    class Selfish(Yard):
+        """Its server renews what Muster should."""
+
+        def move(self):
+            self.until_s = max(self.until_s, self.clock.now() + 10.0)
+            super().move()
+
+    return stand_of(Selfish())
+
+
+def takes_no_orders_after_a_lease():
+    class Locked(Yard):
+        def order(self, robot, goal):
+            super().order(robot, goal if self.clock.now() < self.stopped_s else None)
+
+        def renew(self, seconds):
+            if self.clock.now() > self.until_s:
+                self.stopped_s = self.clock.now()
+            super().renew(seconds)
+
+        stopped_s = math.inf
+
+    return stand_of(Locked())
+
+
 BROKEN = {
     "settings": (accepts_any_setting, raises_an_error_of_its_own_for_a_wrong_setting),
     "claims": (claims_anew_each_time, connects_to_claim, claims_nothing),
@@ -502,5 +557,11 @@ BROKEN = {
     "prompt": (waits_for_silent_robots,),
     "again": (gives_silent_robots_up, drops_orders_after_silence),
     "restart": (begins_at_the_start_alone, reports_starts_when_it_is_opened_again),
+    "lease": (
+        goes_on_without_renewals,
+        stops_although_it_is_renewed,
+        renews_itself,
+        takes_no_orders_after_a_lease,
+    ),
 }
 """Adapters by the clause that finds what they lack."""

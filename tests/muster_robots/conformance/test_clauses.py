@@ -71,6 +71,10 @@ LACKS = {
     "drops_orders_after_silence": "r_0: 0 of 1 way points passed within",
     "begins_at_the_start_alone": "r_0: stands away from its start",
     "reports_starts_when_it_is_opened_again": "m from where it was left, when opened again",
+    "goes_on_without_renewals": "after orders were renewed last; expected at most 11.",
+    "stops_although_it_is_renewed": "after its order, which was renewed",
+    "renews_itself": "after orders were renewed last; expected at most 11.",
+    "takes_no_orders_after_a_lease": "r_0: 0 of 1 way points passed within",
 }
 
 
@@ -86,9 +90,9 @@ def test_a_clause_finds_what_is_broken(clause, broken):
     assert LACKS[broken.__name__] in found.seen
 
 
-@pytest.mark.parametrize("ability", ["holds", "battery", "resumes"])
+@pytest.mark.parametrize("ability", ["holds", "battery", "resumes", "leased"])
 def test_what_a_fleet_does_not_declare_is_not_asked_of_it(ability):
-    declared = [name for name in ("ground", "holds", "battery", "resumes") if name != ability]
+    declared = [name for name in ("ground", "holds", "battery", "resumes", "leased") if name != ability]
     found = list(findings(stand_of(Yard(), abilities=declared), without=[n for n in CLAUSES if not CLAUSES[n].ability]))
     excused = {one.clause for one in found if one.result == "not declared"}
     assert excused == {name for name, clause in CLAUSES.items() if clause.ability == ability}
@@ -102,6 +106,18 @@ def test_what_cannot_be_tried_does_not_hold():
     found = [one for one in findings(stand, without=others) if one.clause not in others]
     assert {one.result for one in found} == {"not tried"}
     assert not any(one.is_well for one in found)
+
+
+def test_leases_are_tried_where_there_is_room():
+    stand = right()
+    stand.lease_reach_m = 20.0
+    (found,) = [
+        one
+        for one in findings(stand, without=[name for name in CLAUSES if name != "lease"])
+        if one.result != "left out"
+    ]
+    assert (found.clause, found.result) == ("lease", "not tried")
+    assert found.seen == "expected 27 m free east of r_0 (--lease-reach 27)"
 
 
 def test_nothing_more_is_tried_where_a_fleet_does_not_open():

@@ -15,7 +15,7 @@ STAND = {make}()
 YARD = STAND.kind
 """
 PLACES = "schema: muster/1\nrobots:\n  - {id: r_0, position: [5, 1]}\n  - {id: r_1, position: [5, 4]}\ntasks: []\n"
-STATIC = ["--without=ages", "--without=raises", "--without=prompt", "--without=again"]
+STATIC = ["--without=ages", "--without=raises", "--without=prompt", "--without=again", "--without=lease"]
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def test_a_fleet_that_lacks_something_as_json(run):
 def test_what_is_not_tried_is_named(run):
     ended = run("right")
     assert ended.exit_code == 1
-    assert ended.stdout.splitlines()[-1] == "lacks ages, raises, prompt, again"
+    assert ended.stdout.splitlines()[-1] == "lacks ages, raises, prompt, again, lease"
 
 
 @pytest.mark.parametrize(

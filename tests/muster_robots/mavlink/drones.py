@@ -28,7 +28,7 @@ def mission(count=1, tasks=None, **more):
 class Sky:
     """The drones of a mission, each behind its own socket."""
 
-    def __init__(self, there, kind=PX4, faults=None, **more):
+    def __init__(self, there, kind=PX4, faults=None, fences=None, **more):
         self.clock, self.drones, self.ends, self.bytes_in = VirtualClock(), {}, {}, {}
         origin = there.origin_wgs84 or ORIGIN
         for k, robot in enumerate(there.robots):
@@ -36,6 +36,7 @@ class Sky:
             drone = SimulatedAutopilot(
                 kind, origin_at(origin, start), (faults or {}).get(robot.id, Faults()), system=k + 1, seed=k + 1, **more
             )
+            drone.fence = (fences or {}).get(robot.id, drone.fence)
             end = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
             end.bind(("127.0.0.1", 0))
             end.setblocking(False)

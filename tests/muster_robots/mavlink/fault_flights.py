@@ -17,6 +17,7 @@ from muster.running.live import carry_out_live
 from muster_robots.custody import Standing
 from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
 from muster_robots.mavlink.simulated.faults import Faults
+from muster_robots.mavlink.simulated.geofence import Area, Geofence
 
 FAR = tuple(Task(id=f"t_{k}", position=(60.0, 6.0 * k, 10.0)) for k in range(4))
 """Tasks that are a dozen seconds of flight away from the starts."""
@@ -84,10 +85,10 @@ class Flight:
         return found
 
 
-def fly(faults, *, count=2, tasks=FAR, kind=PX4, at_end="return", **settings):
-    """Let drones fly a mission, and end as `--at-end` says; `faults` are those of r_0, or by robot."""
+def fly(faults, *, count=2, tasks=FAR, kind=PX4, at_end="return", fences=None, **settings):
+    """Let drones fly a mission, and end as `--at-end` says; `faults` are those of r_0, or by robot, as are `fences`."""
     there, heard = mission(count, tasks), []
-    sky = Sky(there, kind, faults if isinstance(faults, dict) else {"r_0": faults})
+    sky = Sky(there, kind, faults if isinstance(faults, dict) else {"r_0": faults}, fences)
     fleet = sky.fleet(there, **settings)
     try:
         report = carry_out_live(there, muster.solve(there, iterations=50), fleet, on_event=heard.append)
@@ -103,6 +104,16 @@ def fly(faults, *, count=2, tasks=FAR, kind=PX4, at_end="return", **settings):
 
 def _at(draw):
     return round(draw.uniform(1.0, 20.0), 1)
+
+
+def drawn_fence(draw):
+    """A fence of r_0, whose home is the origin of the map: one to three areas, not all of which are at home."""
+    inside = Area(True, ((-30.0, -40.0), (draw.uniform(30, 90), -40.0), (draw.uniform(30, 90), 60.0), (-30.0, 60.0)))
+    circle = Area(False, ((draw.uniform(20, 70), draw.uniform(-10, 30)),), draw.uniform(4, 12))
+    corner = draw.uniform(25, 60), draw.uniform(-10, 20)
+    triangle = Area(False, (corner, (corner[0] + 15.0, corner[1]), (corner[0], corner[1] + 15.0)))
+    areas = draw.sample((inside, circle, triangle), draw.randint(1, 3))
+    return Geofence(tuple(areas), return_point=draw.random() < 0.5, begins_s=draw.choice((0.0, 0.0, 6.0)))
 
 
 FAMILIES = {
@@ -122,6 +133,7 @@ FAMILIES = {
     "battery sags for a second": lambda draw: {"low_battery_at_s": _at(draw), "low_battery_for_s": 1.0},
     "fence breached, 2 to 10 s": lambda draw: {"breach_at_s": _at(draw), "breach_for_s": draw.uniform(2, 10)},
     "fence refuses way points": lambda draw: {"fence_m": draw.uniform(20, 70), "mute_parameters": draw.random() < 0.5},
+    "fence of polygons and circles": lambda draw: {"fence": drawn_fence(draw)},
     "first way point too far": lambda draw: {
         "first_item_m": draw.uniform(20, 70),
         "mute_parameters": draw.random() < 0.5,
@@ -134,13 +146,15 @@ FAMILIES = {
     "motors stop": lambda draw: {"disarm_at_s": _at(draw)},
     "30 % of packets lost": lambda draw: {"loss": 0.3},
 }
-"""By name the fields of `Faults` of the drone r_0."""
+"""By name the fields of `Faults` of the drone r_0; `fence` is that of its autopilot."""
 
 
 def flight_of(family, seed):
     """A flight of one to three drones, on PX4 or ArduPilot, with any end; in one of three r_1 has a gap too."""
     draw = random.Random(f"{family} {seed}")
-    faults = {"r_0": Faults(**FAMILIES[family](draw))}
+    drawn = FAMILIES[family](draw)
+    fences = {"r_0": drawn.pop("fence", Geofence())}
+    faults = {"r_0": Faults(**drawn)}
     if draw.random() < 1 / 3:
         faults["r_1"] = Faults(silent_at_s=_at(draw), silent_for_s=draw.uniform(2, 20))
     tasks = tuple(
@@ -148,7 +162,7 @@ def flight_of(family, seed):
         for k in range(draw.randint(2, 6))
     )
     how = {"count": draw.randint(1, 3), "kind": draw.choice((PX4, ARDUPILOT)), "offboard": draw.random() < 0.25}
-    return fly(faults, tasks=tasks, at_end=draw.choice(("return", "land", "hold", "return")), **how)
+    return fly(faults, tasks=tasks, fences=fences, at_end=draw.choice(("return", "land", "hold", "return")), **how)
 
 
 def row_of(family, flights):

@@ -54,6 +54,7 @@ class Talk:
         robot = Robot(id="r_0", position=(0.0, 0.0, 0.0), kind="air", speed_mps=4.0)
         telemetry = DroneTelemetry((0.0, 0.0, 0.0), GlobalFrame(ORIGIN, (0.0, 0.0, 0.0)))
         self.session = Session(Drone(robot, telemetry, FlightSettings(**{"arm": True, **settings}), None), no_fence)
+        self.session.drone.limits.is_read = True  # as a fleet has it before the first order
         self.kind, self.now = kind, 0.0
         self.say(heartbeat(kind), position())
 

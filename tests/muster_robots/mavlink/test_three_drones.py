@@ -13,7 +13,7 @@ from muster_robots.mavlink.autopilots import ARDUPILOT, PX4
 from muster_robots.mavlink.dialect import mavlink
 from muster_robots.mavlink.simulated.faults import Faults
 
-HARMLESS = {"HEARTBEAT", "SET_MESSAGE_INTERVAL", "PARAM_REQUEST_READ"}
+HARMLESS = {"HEARTBEAT", "SET_MESSAGE_INTERVAL", "PARAM_REQUEST_READ", "MISSION_REQUEST_LIST", "MISSION_ACK"}
 TASKS = tuple(Task(id=f"t_{k}", position=(25.0 + 25.0 * (k // 3), 6.0 * (k % 3), 10.0)) for k in range(9))
 
 

@@ -27,7 +27,9 @@ class There:
 
         self.now, self.x, self.told, self.actions = 0.0, 0.0, [], Navigator()
         self.drive = drive
-        publisher = SimpleNamespace(publish=self.told.append, get_num_connections=lambda: 1)
+        stats = SimpleNamespace(get_stats_info=lambda: [(1, "/robot", "o", "TCPROS", "/r", True, "")])
+        publisher = SimpleNamespace(publish=self.told.append, get_num_connections=lambda: 1, impl=stats)
+        monkeypatch.setattr(orders, "hear", lambda _, __, heard, **___: setattr(self, "goal_said", heard))
         monkeypatch.setattr(orders.rospy, "Publisher", lambda *_, **__: publisher)
         monkeypatch.setattr(orders, "pose_stamped", lambda _, place, __: place[0])
         monkeypatch.setattr(orders, "twist_of", lambda velocity: velocity)
@@ -167,3 +169,76 @@ def test_whose_goal_somebody_else_cancels_takes_no_part_until_it_has_stood(there
     robot.pass_by(5.0, 0.0)
     assert not robot.port.telemetry().suspended
     assert robot.goals == [50.0]
+
+
+@pytest.mark.parametrize("outcome", ["aborted", "canceled", None])
+def test_one_that_pursues_a_goal_of_somebody_else_is_left_to_it_until_it_has_ended_and_the_robot_has_stood(
+    there, outcome
+):
+    robot = there("move_base")
+    robot.port.send([FAR])
+    robot.pass_by(2.0, 1.0)
+    own = robot.actions.given[0][1]
+    robot.actions.foreign = "/rviz-1-12.5"
+    own.outcome = own.outcome if outcome is None else Outcome(outcome)
+    robot.pass_by(1.0, 1.0)
+    said = robot.port.telemetry()
+    why = "another station: move_base has goal /rviz-1-12.5, which is not Muster's"
+    assert (said.suspended, said.refused) == (why, "")
+    assert own.outcome is not None  # cancelled by its own id
+    robot.port.cancel()
+    robot.pass_by(20.0, 0.0)
+    assert robot.port.telemetry().suspended
+    robot.actions.foreign = ""
+    robot.pass_by(1.0, 1.0)
+    assert robot.port.telemetry().suspended
+    robot.pass_by(5.0, 0.0)
+    assert not robot.port.telemetry().suspended
+    assert robot.goals == [50.0]
+
+
+@pytest.mark.parametrize("drive", GOALS)
+def test_a_goal_of_somebody_else_on_its_topic_takes_a_robot_until_it_has_stood(there, drive, caplog):
+    robot = there(drive)
+    topic = "/r/WP" if drive == "goals" else "/r/move_base_simple/goal"
+    robot.port.send([FAR])
+    robot.goal_said(SimpleNamespace(_connection_header={"callerid": "/unnamed"}))  # its own
+    robot.pass_by(2.0, 1.0)
+    assert not robot.port.telemetry().suspended
+    robot.goal_said(SimpleNamespace(_connection_header={"callerid": "/rviz"}))
+    robot.pass_by(0.5, 1.0)
+    assert robot.port.telemetry().suspended == f"another station: a goal on {topic} is not Muster's"
+    robot.port.cancel()
+    robot.pass_by(10.0, 1.0)
+    robot.port.stand()  # as at the end
+    assert robot.port.telemetry().suspended
+    robot.pass_by(5.0, 0.0)
+    assert not robot.port.telemetry().suspended
+    assert robot.goals == [50.0]
+    assert len([one for one in caplog.records if "is not Muster's" in one.getMessage()]) == 1
+
+
+def test_goals_of_move_base_are_others_by_their_ids(rospy_there, monkeypatch):
+    """By the states that its server sends; goals of an earlier run are Muster's, and those that have ended nobody's."""
+    from muster_robots.ros1 import move_base
+    from muster_robots.ros1.ros import GoalID, GoalStatus, GoalStatusArray
+
+    link = SimpleNamespace(get_num_connections=lambda: 1)
+    monkeypatch.setattr(move_base.rospy, "Publisher", lambda *_, **__: link)
+    monkeypatch.setattr(move_base, "hear", lambda *_, **__: link)
+    monkeypatch.setattr(move_base.rospy, "get_name", lambda: "/muster")
+    now = [10.0]
+    navigator = move_base.MoveBaseNavigator("/r/move_base", lambda: now[0], threading.RLock())
+
+    def foreign(*states):
+        said = [GoalStatus(goal_id=GoalID(id=name), status=status) for name, status in states]
+        navigator._hear_states(GoalStatusArray(status_list=said))
+        return navigator.foreign
+
+    assert foreign(("/muster-1-5.0", GoalStatus.ACTIVE)) == ""
+    assert foreign(("/rviz-1-7.0", GoalStatus.SUCCEEDED), ("/muster-2-8.0", GoalStatus.ACTIVE)) == ""
+    assert foreign(("/muster-2-8.0", GoalStatus.PREEMPTING), ("/rviz-1-7.0", GoalStatus.PENDING)) == "/rviz-1-7.0"
+    assert foreign(("/rviz-1-7.0", GoalStatus.ACTIVE)) == "/rviz-1-7.0"
+    now[0] += 10.0  # its server has gone
+    assert navigator.foreign == ""
+    assert foreign() == ""

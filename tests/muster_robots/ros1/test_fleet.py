@@ -197,8 +197,12 @@ def port_of(hear, monkeypatch):
 
     def of(drive):
         told = Told()
-        publisher = SimpleNamespace(publish=told.append, get_num_connections=lambda: told.listeners)
+        stats = SimpleNamespace(
+            get_stats_info=lambda: [(1, "/robot", "o", "TCPROS", "/r_0", True, "")] * told.listeners
+        )
+        publisher = SimpleNamespace(publish=told.append, get_num_connections=lambda: told.listeners, impl=stats)
         monkeypatch.setattr(orders.rospy, "Publisher", lambda *_, **__: publisher)
+        monkeypatch.setattr(orders, "hear", lambda *_, **__: None)  # goals of others
         monkeypatch.setattr(orders, "pose_stamped", lambda _, place, __: place[:2])
         monkeypatch.setattr(orders, "twist_of", lambda velocity: velocity)
         own = {"frame": FRAME, "flat": True, "arrival_m": 0.1, "lock": threading.RLock(), "on_pass": lambda: None}

@@ -1,6 +1,7 @@
 """Robots with move_base: processes that know nothing of Muster, only rospy (`move_base.py`)."""
 
 import json
+import re
 import time
 
 import pytest
@@ -111,6 +112,39 @@ def test_a_server_that_is_killed_and_comes_back_gets_its_goal_again(ros, tmp_pat
 
 
 @pytest.mark.long
+@pytest.mark.parametrize(
+    ("by", "topic", "words", "why"),
+    [
+        (
+            "action",
+            "move_base/goal",
+            (),
+            r"move_base(: canceled by somebody else| has goal /rviz-1-12.5, which is not)",
+        ),
+        ("topic", "move_base_simple/goal", ("simple",), "a goal on /r_1/move_base_simple/goal is not Muster's"),
+    ],
+    ids=["action", "topic"],
+)
+def test_a_robot_that_another_station_sends_away_does_its_tasks_when_it_has_been_there(
+    ros, tmp_path, by, topic, words, why
+):
+    (tmp_path / "m.yaml").write_text(MISSION.replace("[8, 6]", "[60, 6]"), encoding="utf-8")
+    for k in range(2):
+        started(ros, f"r_{k}", 0, 3 * k, *words)
+    hear = 2 if words else 1  # of a topic Muster, too
+    station = ros.start(ros.file("other_station.py"), f"/r_1/{topic}", by, 10, 12, hear)
+    assert station.stdout.readline() == "there\n"
+    asked = ("--drive", "move_base_simple", "--arrival", "0.2") if words else ()
+    carried = ros.muster("m.yaml", *QUICK, "--profile", "move_base", *asked)
+    told = told_until(carried, "r_1 sets out for task")
+    station.stdin.write("\n")
+    station.stdin.flush()
+    report, told = done(carried, told)
+    assert re.search(f"another station: {why}", told)  # by what comes first, where it has a goal of Muster's
+    assert set(report["tasks_done"]) == TASKS, told
+
+
+@pytest.mark.long
 def test_all_tasks_are_done_where_the_master_is_started_anew(own_ros, mission):
     started(own_ros, "r_0", 0, 0)
     started(own_ros, "r_1", 0, 3)
@@ -146,3 +180,16 @@ def test_what_a_robot_lacks_is_named_before_the_mission_begins(ros, mission, wor
     assert (carried.returncode, out) == (2, "")
     assert own_words(err) == f"robot r_1: {said.format(' within 4 s')}\n"
     assert f"robot r_1: {said.format('')}; it is waited for up to 4 s" in err
+
+
+@pytest.mark.long
+def test_muster_which_hears_goals_on_a_topic_does_not_count_as_the_one_that_receives_them(ros, mission):
+    started(ros, "r_0", 0, 0, "simple")
+    started(ros, "r_1", 0, 3, "poses")
+    time.sleep(1.0)
+    asked = ("--profile", "move_base", "--drive", "move_base_simple", "--wait", "4")
+    carried = ros.muster(mission, *QUICK, *asked)
+    out, err = carried.communicate(timeout=40)
+    assert (carried.returncode, out) == (2, "")
+    expected = "a subscriber of /r_1/move_base_simple/goal (geometry_msgs/PoseStamped)"
+    assert own_words(err) == f"robot r_1: nobody receives its orders within 4 s; expected {expected}\n"

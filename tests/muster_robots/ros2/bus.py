@@ -39,6 +39,9 @@ class Participant:
         self._bus.readers.setdefault(topic, []).append(reader)
         return reader
 
+    def others(self, topic, _):
+        return None
+
     def writer(self, topic, _):
         return Writer(self._bus, topic)
 

@@ -37,6 +37,9 @@ class Middleware:
     def reader(self, topic, _, latched=False):
         return self.heard.setdefault(topic, Heard())
 
+    def others(self, topic, _):
+        return self.heard.setdefault(topic, Heard())
+
     def writer(self, topic, _):
         return self.told.setdefault(topic, Told())
 
@@ -61,7 +64,7 @@ class Navigation(Heard):
 
 class Navigator:
     ready = True
-    unfit = ""
+    unfit = foreign = ""
 
     def __init__(self):
         self.given = []

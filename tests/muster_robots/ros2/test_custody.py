@@ -152,6 +152,56 @@ def test_whose_goal_somebody_else_cancels_takes_no_part_until_it_has_stood():
     assert there.goals == [50.0]
 
 
+@pytest.mark.parametrize("outcome", ["aborted", "canceled", None])
+def test_one_that_pursues_a_goal_of_somebody_else_is_left_to_it_until_it_has_ended_and_the_robot_has_stood(outcome):
+    """Servers end the goal before as they like, or leave it under way."""
+    there = There("nav2")
+    there.port.send([Waypoint(FAR)])
+    there.pass_by(2.0, 1.0)
+    own = there.wire.actions.given[0][1]
+    there.wire.actions.foreign = "12ab"
+    own.outcome = own.outcome if outcome is None else Outcome(outcome)
+    there.pass_by(1.0, 1.0)
+    why = "another station: navigate_to_pose has goal 12ab, which is not Muster's"
+    assert there.port.telemetry().suspended == why
+    assert there.port.telemetry().refused == ""
+    assert own.outcome is not None  # cancelled by its own id
+    there.port.send([Waypoint((30.0, 0.0, 0.0))])
+    there.pass_by(20.0, 0.0)  # it stands, as where others are in its way
+    assert there.port.telemetry().suspended
+    there.wire.actions.foreign = ""
+    there.pass_by(1.0, 1.0)
+    assert there.port.telemetry().suspended
+    assert there.goals == [50.0]
+    there.pass_by(6.0, 0.0)
+    assert not there.port.telemetry().suspended
+    assert there.goals == [50.0, 30.0]
+
+
+def test_a_goal_of_somebody_else_on_its_topic_takes_a_robot_until_it_has_stood():
+    there = There("goals")
+    there.port.send([Waypoint(FAR)])
+    there.pass_by(2.0, 1.0)
+    assert not there.port.telemetry().suspended
+    there.wire.heard["/r/goal_pose"].append(posed(-5.0))
+    there.pass_by(1.0, 0.0)  # navigation plans
+    assert there.port.telemetry().suspended == "another station: a goal on /r/goal_pose is not Muster's"
+    there.port.cancel()
+    there.pass_by(10.0, -0.5)
+    assert there.port.telemetry().suspended
+    there.pass_by(5.0, 0.0)
+    assert not there.port.telemetry().suspended
+    assert there.goals == [50.0]
+
+
+def test_a_goal_of_somebody_else_is_told_once(caplog):
+    there = There("nav2")
+    there.wire.actions.foreign = "12ab"
+    there.pass_by(20.0, 1.0)
+    told = [record.getMessage() for record in caplog.records if "12ab" in record.getMessage()]
+    assert len(told) == 1
+
+
 def test_one_that_moves_by_no_goal_of_musters_is_taken():
     there = There("nav2")
     there.port.send([Waypoint(FAR)])

@@ -13,10 +13,12 @@ from muster.motion.port import Waypoint
 pytest.importorskip("cyclonedds")
 
 from muster_robots.fleet_settings import Ros2Settings
+from muster_robots.ros2 import dds_actions
 from muster_robots.ros2.action_message_types import GetResultReply, words_of
 from muster_robots.ros2.dds import DdsMiddleware
 from muster_robots.ros2.dds_endpoints import Endpoint
 from muster_robots.ros2.fleet import Ros2Fleet
+from muster_robots.ros2.message_types import Header, Point, Pose, PoseStamped, Quaternion
 
 pytestmark = pytest.mark.usefixtures("loopback")
 MISSION = """
@@ -106,6 +108,64 @@ def test_a_goal_is_reached_and_one_that_is_aborted_or_rejected_is_refused_with_i
         assert port.telemetry().refused == f"navigate_to_pose: {refused}"
     port.send([Waypoint((0.0, 0.0, 0.0))])  # the robot goes on to what it can reach
     until(fleet, lambda: port.telemetry().passed == 1)
+
+
+def test_a_goal_of_another_client_takes_the_robot_until_it_is_there(robot, fleet_of, monkeypatch):
+    """The other client is a fleet whose goals have ids of their own."""
+    robot("r_0", 0, 0, "nav2=jazzy", "tf")
+    fleet = fleet_of(profile="nav2")
+    port = fleet.ports["r_0"]
+    port.send([Waypoint((100.0, 0.0, 0.0))])
+    until(fleet, lambda: port.telemetry().position[0] > 1.0)
+    other = DdsMiddleware()
+    navigator = other.navigator("/r_0/navigate_to_pose")
+    until(fleet, lambda: other.wait(0.01) or navigator.ready)
+    monkeypatch.setattr(dds_actions, "_OWN", b"rviz2")
+    theirs = navigator.go(
+        PoseStamped(Header(frame_id="map"), Pose(Point(0.0, 6.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0)))
+    )
+    monkeypatch.undo()
+    until(fleet, lambda: other.wait(0.01) or port.telemetry().suspended)
+    assert f"navigate_to_pose has goal {theirs._id.uuid.hex()}, which is not Muster's" in port.telemetry().suspended
+    until(fleet, lambda: other.wait(0.01) or theirs.outcome is not None)
+    assert theirs.outcome.status == "succeeded"
+    port.send([Waypoint((2.0, 0.0, 0.0))])
+    until(fleet, lambda: not port.telemetry().suspended)
+    until(fleet, lambda: port.telemetry().passed == 1)
+    other.close()
+
+
+def test_a_fleet_that_has_heard_the_goals_of_others_receives_none_when_it_is_closed(fleet_of, robot):
+    robot("r_0", 0, 0, "goals", "tf")
+    fleet = fleet_of()
+    other = DdsMiddleware()
+    says = other.writer("/r_0/goal_pose", PoseStamped)
+    until(fleet, lambda: says.listeners == 2)
+    fleet.close()
+    end = time.monotonic() + 10.0
+    while says.listeners > 1:
+        assert time.monotonic() < end, "this did not come about"
+        other.wait(0.05)
+    other.close()
+
+
+def test_a_goal_of_another_station_on_goal_pose_takes_the_robot_until_it_has_stood(robot, fleet_of):
+    robot("r_0", 0, 0, "goals", "tf")
+    fleet = fleet_of()
+    port = fleet.ports["r_0"]
+    port.send([Waypoint((60.0, 0.0, 0.0))])
+    until(fleet, lambda: port.telemetry().position[0] > 1.0)
+    assert not port.telemetry().suspended  # its own goal is none of others
+    other = DdsMiddleware()
+    says = other.writer("/r_0/goal_pose", PoseStamped)
+    until(fleet, lambda: says.listeners == 2)
+    place = Pose(Point(0.0, 4.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0))
+    says.write(PoseStamped(Header(frame_id="map"), place))
+    until(fleet, lambda: port.telemetry().suspended)
+    assert port.telemetry().suspended == "another station: a goal on /r_0/goal_pose is not Muster's"
+    until(fleet, lambda: not port.telemetry().suspended)
+    assert port.telemetry().position[:2] == pytest.approx((0.0, 4.0), abs=0.1)
+    other.close()
 
 
 def test_a_goal_that_is_cancelled_ends_and_the_robot_stays(robot, fleet_of):

@@ -20,6 +20,7 @@ from muster_robots.mavlink.simulated.earth import degrees_of, ned_of
 from muster_robots.mavlink.simulated.failsafes import OwnModes
 from muster_robots.mavlink.simulated.faults import Faults
 from muster_robots.mavlink.simulated.flight import Flight
+from muster_robots.mavlink.simulated.geofence import Geofence
 
 _OFFBOARD_LOST_S = 1.0
 _DISARMS_AFTER_S = 2.0
@@ -42,6 +43,8 @@ class SimulatedAutopilot:
         what goes wrong, and the seed of what is lost.
     system
         its number.
+    fence
+        its polygons and circles.
     """
 
     kind: Autopilot
@@ -51,6 +54,7 @@ class SimulatedAutopilot:
     seed: int = 0
     autopilot_field: int | None = None  # in heartbeats; of the kind by default
     flight: Flight = field(default_factory=Flight)
+    fence: Geofence = field(default_factory=Geofence)
     mode: int = 0
     armed: bool = False
     battery: float = 0.9
@@ -70,6 +74,7 @@ class SimulatedAutopilot:
         self._now = self._said_s = self._telemetry_s = -1e9
         self._arms_s: float | None = None  # when it will be armed
         self._landed_s: float | None = None
+        self._fence_asked = 0  # requests of its fence
         self._queue: list[bytes] = []  # what has arrived while the process stood still
 
     def receive(self, data: bytes) -> None:
@@ -116,7 +121,7 @@ class SimulatedAutopilot:
 
     @cached_property
     def _own(self) -> OwnModes:
-        return OwnModes(self.kind, self.faults, self._tell)
+        return OwnModes(self.kind, self.faults, self._tell, self.fence.action)
 
     def _is_on(self, what: str) -> bool:
         return self._armed_s > -1e8 and self._own.is_on(what, self._now - self._armed_s)
@@ -146,7 +151,13 @@ class SimulatedAutopilot:
             self.armed = False
             self._tell(mavlink.MAV_SEVERITY_INFO, "Disarmed by external command")
         if self.armed and self._armed_s > -1e8:
-            self.mode = self._own.mode_after(self.mode, self._now - self._armed_s)
+            self.mode = self._own.mode_after(self.mode, self._now - self._armed_s, outside=self._is_outside)
+
+    @property
+    def _is_outside(self) -> bool:
+        """Whether it flies outside its fence of polygons and circles, and that is on."""
+        armed_for_s = self._now - self._armed_s
+        return self.armed and self.fence.is_on and self.fence.is_left_at(self.flight.place, armed_for_s)
 
     @cached_property
     def _full(self) -> float:
@@ -162,7 +173,7 @@ class SimulatedAutopilot:
             self._say("heartbeat", mavlink.MAV_TYPE_QUADROTOR, autopilot, base, self.mode, state, 3)
             sticks = _STICKS if self.faults.pilot_at_s is not None and not self.faults.no_sticks else 0
             self._say("sys_status", *[sticks] * 3, 0, 12000, -1, round(self.battery * 100), 0, 0, 0, 0, 0, 0)
-            breached = int(self._is_on("breach"))
+            breached = int(self._is_on("breach") or self._is_outside)
             if self._is_on("breach_text"):
                 self._tell(mavlink.MAV_SEVERITY_WARNING, "Geofence breached")
             self._say("fence_status", breached, breached, mavlink.FENCE_BREACH_BOUNDARY if breached else 0, 0)
@@ -253,12 +264,20 @@ class SimulatedAutopilot:
 
     def _on_param_request_read(self, message: Message) -> None:
         fence_m, first_m = self.faults.fence_m or 0.0, self.faults.first_item_m or 0.0
-        ardupilot = {"FENCE_ENABLE": 1.0, "FENCE_TYPE": 2.0, "FENCE_RADIUS": fence_m, "FENCE_ALT_MAX": 100.0}
+        ardupilot = {"FENCE_RADIUS": fence_m, "FENCE_ALT_MAX": 100.0, "FENCE_AUTOENABLE": 0.0}
         px4 = {"GF_MAX_HOR_DIST": fence_m, "GF_MAX_VER_DIST": 0.0, "MIS_DIST_1WP": first_m}
-        known = px4 if self.kind is PX4 else ardupilot
+        fractions = px4 if self.kind is PX4 else ardupilot
+        known = {name: (value, mavlink.MAV_PARAM_TYPE_REAL32) for name, value in fractions.items()}
+        known |= self.fence.parameters(self.kind)
         if message.param_id in known and not self.faults.mute_parameters:
-            value = known[message.param_id]
-            self._say("param_value", message.param_id.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32, len(known), 0)
+            self._say("param_value", message.param_id.encode(), *known[message.param_id], len(known), 0)
+
+    def _on_mission_request_list(self, message: Message) -> None:
+        for name, values in self.fence.reply(message, self.origin, self._fence_asked):
+            self._say(name, *values)
+        self._fence_asked += 1
+
+    _on_mission_request_int = _on_mission_request_list
 
     def _set_mode(self, message: Message) -> int:
         wide = self.kind is PX4
@@ -311,8 +330,11 @@ class SimulatedAutopilot:
         first_m = self.faults.first_item_m
         if far_m and first_m is not None and far_m[0] > first_m:
             return f"First waypoint too far away: {far_m[0]:.0f}m, {first_m:.0f} max"
-        if self.faults.fence_m is not None and (outside := [m for m in far_m if m > self.faults.fence_m]):
-            return f"Geofence violation for waypoint {far_m.index(outside[0]) + 1}"
+        far = math.inf if self.faults.fence_m is None else self.faults.fence_m
+        for number, (item, metres) in enumerate(zip(places, far_m, strict=True), 1):
+            left = self.kind is PX4 and self.fence.is_left_at(self._place_of(item), self._now - self._armed_s)
+            if metres > far or left:
+                return f"Geofence violation for waypoint {number}"
         return ""
 
     def _take_off(self, message: Message) -> int:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from muster_robots.mavlink.autopilots import PX4, Autopilot
 from muster_robots.mavlink.dialect import mavlink
 from muster_robots.mavlink.simulated.faults import Faults
+from muster_robots.mavlink.simulated.geofence import HOLDS, LANDS, RETURNS
 
 FLASH_S = 3.0
 """Seconds for which a failsafe is on after the process of an autopilot stood still."""
@@ -31,13 +32,17 @@ class OwnModes:
         What goes wrong.
     tell : callable
         Sends a status text of a severity.
+    fence_action : int
+        GF_ACTION of PX4; ArduPilot returns when it leaves its fence.
     """
 
     kind: Autopilot
     faults: Faults
     tell: Callable[[int, str], None]
+    fence_action: int = HOLDS
     on: str = ""  # cause of the failsafe that is on
     asked: int = 0  # the mode that flies on when it is over
+    _outside: bool = False  # whether the drone was outside its fence when that was looked at last
     _happened: set[str] = field(default_factory=set)
 
     @property
@@ -56,19 +61,34 @@ class OwnModes:
         self._happened.add(what)
         return True
 
-    def mode_after(self, mode: int, since_armed_s: float) -> int:
-        """Return the mode in which the autopilot flies on, from the one in which it flies."""
+    def mode_after(self, mode: int, since_armed_s: float, *, outside: bool = False) -> int:
+        """Return the mode in which the autopilot flies on, from the one in which it flies.
+
+        Parameters
+        ----------
+        mode : int
+            In which it flies.
+        since_armed_s : float
+            Seconds since the first arming.
+        outside : bool
+            Whether the drone is outside its fence.
+        """
         faults = self.faults
         if self._once("rtl", faults.rtl_at_s is not None and since_armed_s >= faults.rtl_at_s):
             self.tell(_INFO, "RTL: climb to 502 m (2 m above destination)")
             mode = self.kind.back
         mode = self._under_a_pilot(mode, since_armed_s)
-        cause = self._cause(mode, since_armed_s)
+        leaves, self._outside = outside and not self._outside, outside
+        if leaves and self.kind is not PX4:
+            self.tell(_CRITICAL, "Polygon fence breached")
+            mode = self.kind.back
+        cause = self._cause(mode, since_armed_s) or ("geofence" if leaves or self.on == "geofence" else "")
+        cause = "" if cause == "geofence" and self.kind is not PX4 else cause
         if cause and not self.on:
             self.asked = mode
             self.tell(_CRITICAL, f"Failsafe enabled: {cause}")
             self.tell(_CRITICAL, "Failsafe mode activated")
-            mode = {"no global position": self.kind.land, "no datalink": self.kind.back}.get(cause, self.kind.hold)
+            mode = self._mode_in(cause)
         elif self.on and not cause:
             self.tell(_INFO, "Failsafe mode deactivated")
             mode = self.asked if self.kind is PX4 else mode
@@ -77,12 +97,19 @@ class OwnModes:
 
     def ask(self, mode: int, flying: int) -> int:
         """Another mode is asked for; return the one in which it flies then: during a failsafe that of the failsafe."""
-        if self.on == "no manual control":  # nobody needs sticks any more
+        if self.on in ("no manual control", "geofence"):  # both are over when another mode is asked for
             self.on = ""
         if not self.on:
             return mode
         self.asked = mode
         return flying
+
+    def _mode_in(self, cause: str) -> int:
+        """Return the mode in which the autopilot flies during a failsafe."""
+        kind = self.kind
+        if cause == "geofence":
+            return {HOLDS: kind.hold, RETURNS: kind.back, LANDS: kind.land}[self.fence_action]
+        return {"no global position": kind.land, "no datalink": kind.back}.get(cause, kind.hold)
 
     def _under_a_pilot(self, mode: int, since_armed_s: float) -> int:
         if self.faults.no_sticks:
