@@ -99,7 +99,7 @@ void TurningMoves::rank_operations(std::span<const Aim> aims) {
     // Shuffled before, so that those of equal cost come in any order.
     for (std::size_t k = choices.size(); k > 1; --k)
       std::swap(choices[k - 1], choices[random_.below(static_cast<int>(k))]);
-    std::sort(choices.begin(), choices.end(), [](const Choice& a, const Choice& b) { return a.cost < b.cost; });
+    std::stable_sort(choices.begin(), choices.end(), [](const Choice& a, const Choice& b) { return a.cost < b.cost; });
     costs_[robot] = cost_of(aims[robot], states_[robot], plans_[robot]);
     weights_[robot] = aims[robot].weight;
   }
