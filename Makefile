@@ -24,10 +24,10 @@ demo: $(VENV)/installed
 	@echo "Maps, physics, ROS 2, MAVLink, mission control in the browser, ...: $(BIN)/pip install -e '.[all]' (1.3 GB; docs/index.md)"
 
 test: $(VENV)/developed test-packages
-	$(BIN)/python -m pytest -n 3 --dist loadgroup --suite=fast $(PYTEST_FLAGS)
+	$(BIN)/python -m pytest -n 2 --dist loadgroup --suite=fast $(PYTEST_FLAGS)
 
 test-all: $(VENV)/developed test-packages
-	$(BIN)/python -m pytest -n 3 --dist loadgroup $(PYTEST_FLAGS)
+	$(BIN)/python -m pytest -n 2 --dist loadgroup $(PYTEST_FLAGS)
 
 test-alone: $(VENV)/developed test-packages
 	@$(BIN)/python -m tools.suites.alone $(PACKAGE)

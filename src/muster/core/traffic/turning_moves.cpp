@@ -81,11 +81,11 @@ void TurningMoves::advance() {
     lift(robot);
   }
   for (int robot = 0; robot < robots(); ++robot) {
-    Operation shifted = plans_[robot];
-    states_[robot] = shifted[0];
-    std::copy(shifted.begin() + 1, shifted.end(), shifted.begin());
+    Operation rest = plans_[robot];
+    states_[robot] = rest[0];
+    std::copy(rest.begin() + 1, rest.end(), rest.begin());
     occupant(TurningGrid::vertex_of(states_[robot]), 0) = robot;
-    put(robot, shifted);
+    put(robot, rest);
   }
 }
 

@@ -20,7 +20,7 @@ struct Aim {
   std::int64_t weight = 1;  // of a step of this robot in the sum that is improved
 };
 
-// Each robot always has an operation, and no two of them collide. From step to step the operations are shifted by one
+// Each robot always has an operation, and no two of them collide. From step to step the operations move up by one
 // and end with a wait, which keeps them so. Then
 //   1. in an order of priority, each robot takes the best operation for which a robot in the way, one at most and of
 //      lower priority, finds another one in turn, and
@@ -35,7 +35,7 @@ class TurningMoves {
   // Decides operations. `order` has the robots by priority. About `checks` operations are checked; one sample is made
   // in any case.
   void plan(std::span<const Aim> aims, std::span<const int> order, std::int64_t checks);
-  // Takes the first step of all operations, and shifts them.
+  // Takes the first step of all operations, and moves them up.
   void advance();
   // The state of a robot after the next step.
   int next(int robot) const { return plans_[robot][0]; }
