@@ -1,8 +1,10 @@
-"""DDS on this computer alone, in a domain of this process' own; simulated robots as processes."""
+"""DDS on this computer alone, in a domain of the test's own; simulated robots as processes."""
 
+import itertools
 import os
 import subprocess
 import sys
+from zlib import crc32
 
 import pytest
 
@@ -12,10 +14,17 @@ LOOPBACK = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="l
 </Domain></CycloneDDS>"""
 
 
+WORKERS, DOMAINS = 8, 200
+_tests = itertools.count()
+
+
 @pytest.fixture
 def loopback(monkeypatch):
+    """Robots of a test are killed, and count as there for ten seconds: the next test is in another domain."""
+    run = crc32(os.environ.get("PYTEST_XDIST_TESTRUNUID", str(os.getpid())).encode())
+    worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
     monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(10 + os.getpid() % 200))
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(10 + (run + worker + WORKERS * next(_tests)) % DOMAINS))
 
 
 @pytest.fixture
