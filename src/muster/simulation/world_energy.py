@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Unpack
 
@@ -29,6 +29,10 @@ class EnergyLook:
 
     moved: Floats
     served: Mapping[str, Serving | None]
+
+
+_NOTHING = EnergyLook(np.zeros((0, 2)), {})
+"""The look at robots of which none has a battery of the mission."""
 
 
 class WorldEnergy:
@@ -114,14 +118,17 @@ class WorldEnergy:
 
     def look(self) -> EnergyLook:
         """What `emptied_since` compares."""
+        if not self._moving_s:
+            return _NOTHING
         return EnergyLook(self._moved(), {robot: self._ports[robot].serving for robot in self._moving_s})
 
-    def emptied_since(self, before: EnergyLook, seconds: float) -> Iterable[int]:
+    def emptied_since(self, before: EnergyLook, seconds: float) -> list[int]:
         """Count what was used and given since a look; the numbers of robots that are empty now, and were not."""
         if not self._moving_s:
-            return
+            return []
         moved = np.abs(self._moved() - before.moved).max(axis=1)
         largest_m = max(port.body.radius_m for port in self._ports.values())
+        emptied = []
         for robot in self._moving_s:
             port = self._ports[robot]
             if moved[self._numbers[robot]] > _STILL:
@@ -129,7 +136,8 @@ class WorldEnergy:
             self._stations.serve(port, before.served[robot], seconds, largest_m)
             if port.energy is not None and port.energy.look().level <= 0.0 and robot not in self._empty:
                 self._empty.add(robot)
-                yield self._numbers[robot]
+                emptied.append(self._numbers[robot])
+        return emptied
 
     def _usage_of(self, robot: Robot, number: int, port: SimulatedPort) -> Callable[[], float]:
         """What tells a robot's usage, in the mission's unit: way and work, or the time of both; waiting is none."""
@@ -138,6 +146,4 @@ class WorldEnergy:
         return lambda: float(self._crowd.travelled()[number]) + port.stay_usage
 
     def _moved(self) -> Floats:
-        if not self._moving_s:
-            return np.zeros((0, 2))
         return np.column_stack([self._crowd.travelled(), self._crowd.headings()])
