@@ -29,8 +29,9 @@ void HeadingDistances::require(std::span<const int> goals, std::int64_t most, in
     tables_[slots[k]].goal = missing[k];
     slots_[missing[k]] = slots[k];
   }
-  for_each_parallel(static_cast<int>(slots.size()), threads,
-                    [&] { return [&, buckets = Buckets()](int k) mutable { fill(tables_[slots[k]], buckets); }; });
+  for_each_parallel(static_cast<int>(slots.size()), threads, [&] {
+    return [&, open = Buckets(1.0, kMostStep)](int k) mutable { fill(tables_[slots[k]], open); };
+  });
 }
 
 // Of the first goals, as many as may have tables.
@@ -73,23 +74,22 @@ int HeadingDistances::without_table(int goal, int state) const {
 
 // Dijkstra's algorithm backwards, with a bucket for each cost: a state is entered from the cell behind it, and by
 // turns. Costs above what a table holds stay at its greatest.
-void HeadingDistances::fill(Table& table, Buckets& buckets) const {
+void HeadingDistances::fill(Table& table, Buckets& open) const {
   auto& costs = table.costs;
   costs.assign(4 * static_cast<std::size_t>(grid_.size()), kUnreached);
-  int left = 0;  // entries of buckets
+  open.clear();
   const auto reach = [&](int state, int sum) {
     const int cost = std::min<int>(sum, kUnreached - 1);
     if (costs[state] <= cost) return;
     costs[state] = static_cast<std::uint16_t>(cost);
-    buckets[sum % kBuckets].push_back(state);
-    ++left;
+    open.push(sum, state);
   };
   for (int heading = 0; heading < 4; ++heading) reach(4 * table.goal + heading, 0);
-  for (int cost = 0; left > 0; ++cost) {
-    auto& bucket = buckets[cost % kBuckets];
-    for (std::size_t k = 0; k < bucket.size(); ++k) {
-      const int state = bucket[k];
-      --left;
+  std::vector<int> states;
+  while (!open.empty()) {
+    const int cost = static_cast<int>(open.least());
+    open.take(states);
+    for (const int state : states) {
       if (costs[state] < std::min<int>(cost, kUnreached - 1)) continue;
       const int back = grid_.ahead(TurningGrid::turned(state, 2));
       const int from = TurningGrid::turned(back, 2);
@@ -97,7 +97,6 @@ void HeadingDistances::fill(Table& table, Buckets& buckets) const {
       reach(TurningGrid::turned(state, 1), cost + kStep);
       reach(TurningGrid::turned(state, 3), cost + kStep);
     }
-    bucket.clear();
   }
 }
 

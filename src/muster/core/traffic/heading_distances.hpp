@@ -1,12 +1,12 @@
 // Costs from each cell and heading to goals, in tables that are kept while memory allows.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "buckets.hpp"
 #include "traffic/turning_grid.hpp"
 
 namespace muster {
@@ -43,13 +43,12 @@ class HeadingDistances {
     std::vector<std::uint16_t> costs;  // by state
   };
   static constexpr std::uint16_t kUnreached = 0xffff;
-  static constexpr int kBuckets = kStep + kAgainstLane + 1;
-  using Buckets = std::array<std::vector<int>, kBuckets>;
+  static constexpr int kMostStep = kStep + kAgainstLane;
 
   std::vector<int> without_table(std::span<const int> goals);
   int without_table(int goal, int state) const;
   std::vector<int> free_slots(std::size_t count);
-  void fill(Table& table, Buckets& buckets) const;
+  void fill(Table& table, Buckets& open) const;
 
   const TurningGrid& grid_;
   std::size_t most_tables_;
