@@ -10,7 +10,7 @@ from typing import Any
 from fastapi import FastAPI
 from starlette.staticfiles import StaticFiles
 
-from muster_control.contract import User
+from muster_control.contract import StoreError, User
 from muster_control.health import health_route
 from muster_control.logs import log_answered
 from muster_control.metrics import Metrics
@@ -52,13 +52,20 @@ def make_app(settings: Settings) -> FastAPI:
     app.state.services = None
     app.state.left = 0
 
-    def services_of() -> Services:
-        services: Services = app.state.services
+    def services_if_open() -> Services | None:
+        services: Services | None = app.state.services
         return services
 
-    guard_state = GuardState(settings, Authenticator.of(settings), Audit(lambda: _audit_writer(app.state.services)))
-    metrics = Metrics(services_of, guard_state)
-    app.router.routes += [*login_routes(guard_state), health_route(services_of, guard_state.warning), metrics.route()]
+    def services_of() -> Services:
+        services = services_if_open()
+        if services is None:  # a page or a request still goes on while the server ends
+            raise StoreError("the server is ending; ask again when it has started anew")
+        return services
+
+    guard_state = GuardState(settings, Authenticator.of(settings), Audit(lambda: _audit_writer(services_if_open())))
+    metrics = Metrics(services_if_open, guard_state)
+    health = health_route(services_if_open, guard_state.warning)
+    app.router.routes += [*login_routes(guard_state), health, metrics.route()]
     if settings.tiles is not None:
         app.mount("/tiles", StaticFiles(directory=settings.tiles))
     _mount_api_and_pages(app, services_of)

@@ -171,6 +171,14 @@ def test_health_without_a_database(app, client, monkeypatch):
     assert known.json()["reasons"] == ["database: /data/muster.db: full; expected room"]
 
 
+@pytest.mark.parametrize("request_of", [{"method": "GET"}, {"method": "POST", "json": {"text": "robots: []"}}])
+def test_who_asks_a_server_that_is_ending_is_told_so(request_of):
+    ended = Client(make_app(Settings()), base_url="http://localhost")
+    answer = ended.request(url="/api/v1/missions", **request_of)
+    assert answer.status_code == 503
+    assert answer.json()["error"] == "the server is ending; ask again when it has started anew"
+
+
 def test_logins_and_refusals_are_in_the_audit_log(app, client):
     client.post("/login", data={"token": COMMANDER}, headers={"origin": "http://10.0.0.5:8117"})
     client.cookies.clear()

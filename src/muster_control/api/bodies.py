@@ -14,6 +14,7 @@ from typing import Any
 
 from fastapi import HTTPException, Request, Response
 from fastapi.routing import APIRoute
+from starlette.types import Receive, Scope
 
 MOST_VALUES = 500_000
 """Of one JSON body, which takes at most about 50 MB in memory."""
@@ -26,17 +27,20 @@ _TOO_LARGE, _BAD = 413, 400
 class BoundedRequest(Request):
     """A request whose body is refused if it exceeds the server's limits or cannot be stored."""
 
+    def __init__(self, scope: Scope, receive: Receive, most_bytes: int) -> None:
+        super().__init__(scope, receive)
+        self.most_bytes = most_bytes
+
     async def stream(self) -> AsyncGenerator[bytes, None]:
         """The body in pieces; all other ways of reading it use this one."""
-        most: int = self.app.state.services_of().settings.upload_bytes
         length = self.headers.get("content-length", "")
-        if length.isdecimal() and (len(length) > 18 or int(length) > most):
-            raise too_long(most)
+        if length.isdecimal() and (len(length) > 18 or int(length) > self.most_bytes):
+            raise too_long(self.most_bytes)
         read = 0
         async for piece in super().stream():
             read += len(piece)
-            if read > most:
-                raise too_long(most)
+            if read > self.most_bytes:
+                raise too_long(self.most_bytes)
             yield piece
 
     async def json(self) -> Any:
@@ -52,7 +56,8 @@ class BoundedRoute(APIRoute):
         handle = super().get_route_handler()
 
         async def bounded(request: Request) -> Response:
-            return await handle(BoundedRequest(request.scope, request.receive))
+            most_bytes = request.app.state.services_of().settings.upload_bytes  # raises while the server ends
+            return await handle(BoundedRequest(request.scope, request.receive, most_bytes))
 
         return bounded
 
