@@ -37,7 +37,6 @@ def pytest_collection():
     try:
         return (yield)
     finally:
-        gc.collect()
         gc.freeze()
         gc.set_threshold(10_000, 20, 20)
         gc.enable()
@@ -50,6 +49,7 @@ def pytest_make_parametrize_id(val, argname):
     return None
 
 
+@pytest.hookimpl(tryfirst=True)  # before xdist, which reads the groups
 def pytest_collection_modifyitems(config, items):
     """Deselect what the suite leaves out; pytest says how many tests that are."""
     given = {name: config.getoption(name) for name in ("suite", "turn", "only", "also")}
