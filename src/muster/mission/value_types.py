@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from numbers import Real
-from typing import Any, ClassVar, Literal, Protocol, TypeGuard, runtime_checkable
+from typing import Any, ClassVar, Literal, Protocol, TypeGuard
 
 from muster.mission.texts.near_matches import did_you_mean
 
@@ -54,9 +54,12 @@ class Invalid:
 INVALID = Invalid()
 
 
-@runtime_checkable
 class Kind(Protocol):
-    """One kind of value: reads it from plain Python data, and describes itself in JSON Schema."""
+    """One kind of value: reads it from plain Python data, and describes itself in JSON Schema.
+
+    A kind may also have `read_column(values)`: many values as `read` gives them, or None where it might refuse one; and
+    `file_form(value)`, if its values stand in files in another form than in the model.
+    """
 
     @property
     def expected(self) -> str:
@@ -72,25 +75,15 @@ class Kind(Protocol):
     def schema(self) -> JsonSchema: ...
 
 
-@runtime_checkable
-class FileForm(Protocol):
-    """A kind whose values stand in files in another form than in the model."""
-
-    def file_form(self, value: Any) -> Any: ...
-
-
-@runtime_checkable
-class Column(Protocol):
-    """A kind that reads many values at once, which costs a fraction of reading each by itself."""
-
-    def read_column(self, values: Sequence[Any]) -> Sequence[Any] | None:
-        """The values as `read` gives them; None where it might refuse one."""
+def column_of(kind: Kind) -> Callable[[Sequence[Any]], Sequence[Any] | None] | None:
+    """How a kind reads many values at once, if it can: it costs a fraction of reading each by itself."""
+    return getattr(kind, "read_column", None)  # an instance check of a protocol would cost more than the reading
 
 
 def read_column(kind: Kind, values: Sequence[Any]) -> Sequence[Any] | None:
     """Many values of one kind; None where `kind.read` might refuse one, which then says why."""
-    if isinstance(kind, Column):
-        return kind.read_column(values)
+    if (column := column_of(kind)) is not None:
+        return column(values)
     faults: list[Fault] = []
     read = [kind.read(value, (), faults) for value in values]
     return None if faults or INVALID in read else read
@@ -369,7 +362,8 @@ class Many:
     def read(self, value: object, at: Path, faults: list[Fault]) -> Any:
         if not is_list(value) or len(value) < self.minimum:
             return refuse(self, value, at, faults)
-        if value and isinstance(self.kind, Column) and (read := self.kind.read_column(value)) is not None:
+        column = column_of(self.kind) if value else None
+        if column is not None and (read := column(value)) is not None:
             return tuple(read)
         items = [self.kind.read(item, (*at, k), faults) for k, item in enumerate(value)]
         return INVALID if any(item is INVALID for item in items) else tuple(items)

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from muster.mission.mission_data import MissionData
 from muster.mission.records import key_of, specified
 from muster.mission.source import IN_PYTHON
-from muster.mission.value_types import FileForm, Kind
+from muster.mission.value_types import Kind
 
 YAML_SUFFIXES = (".yaml", ".yml")
 """How names of mission files in YAML end."""
@@ -86,7 +86,8 @@ def _file_form(f: Field[Any], value: Any) -> Any:
 
 
 def _plain_of(kind: Kind, item: Any) -> Any:
-    return plain(kind.file_form(item) if isinstance(kind, FileForm) and item is not None else item)
+    form = getattr(kind, "file_form", None)
+    return plain(item if form is None or item is None else form(item))
 
 
 def flow_text(data: Any) -> str:
