@@ -308,7 +308,7 @@ def test_addresses_where_no_cluster_is(address, why):
 
 
 def test_something_else_answers(monkeypatch):
-    monkeypatch.setattr("muster.allocation.search.ray_cluster._LONGEST_TO_ANSWER_S", 2.0)
+    monkeypatch.setattr("muster.allocation.search.ray_cluster._LONGEST_TO_ANSWER_S", 0.2)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"127.0.0.1:{silent.getsockname()[1]}"
         with pytest.raises(ParameterError, match="what is there is not the head of a Ray cluster"):

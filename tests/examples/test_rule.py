@@ -40,15 +40,16 @@ def test_without_the_package_the_mission_is_refused_by_name():
 
 
 def test_wrong_values_are_named_with_their_line(muster, tmp_path):
-    for key, expected in {
+    expected = {
         "max_tasks: 0": "robots[0].max_tasks: 0; expected a whole number of at least 1",
-        "max_tasks: many": 'robots[0].max_tasks: "many"; expected a whole number of at least 1',
-        "max_task: 2": "robots[0].max_task: unknown key; expected a known key; did you mean 'max_tasks'?",
-    }.items():
-        wrong = written(tmp_path, TEXT.replace("max_tasks: 2", key))
-        ended = muster("check", wrong)
-        assert ended.returncode == 2
-        assert ended.stderr.splitlines()[0] == f"{wrong}:5: {expected}"
+        "max_tasks: many": 'robots[1].max_tasks: "many"; expected a whole number of at least 1',
+        "max_task: 2": "robots[2].max_task: unknown key; expected a known key; did you mean 'max_tasks'?",
+    }
+    robots = "".join(f"  - {{id: r{k}, position: [0, 0], {key}}}\n" for k, key in enumerate(expected))
+    wrong = written(tmp_path, f"schema: muster/1\nrobots:\n{robots}tasks: []\n")
+    ended = muster("check", wrong)
+    assert ended.returncode == 2
+    assert ended.stderr.splitlines()[:3] == [f"{wrong}:{3 + k}: {said}" for k, said in enumerate(expected.values())]
 
 
 @pytest.mark.long(keep=1)

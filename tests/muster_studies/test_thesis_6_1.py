@@ -114,6 +114,7 @@ def test_usages_are_the_published_ones():
     assert all(record["physics"] is None for record in records(table, figure="6.2a"))
 
 
+@pytest.mark.long
 def test_totals_add_up():
     usages, totals = DroneUsages().table(QUICK, FOUND), DroneTotals().table(QUICK, FOUND)
     for values in ("own", "ways", "kinematic"):
