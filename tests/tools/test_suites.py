@@ -215,6 +215,16 @@ class TestCI:
         (step,) = (step for step in ci.steps(1, ["docs/maps.md"]) if step.name == "documents")
         assert "docs/maps.md" in step.command[-1]
 
+    @pytest.mark.parametrize(
+        ("file", "page"),
+        [("docs/images/field.png", "docs/areas.md"), ("docs/measured/study-jams.json", "docs/avoidance.md")],
+    )
+    def test_a_page_is_chosen_whose_picture_or_measurement_has_changed(self, file, page):
+        (step,) = (step for step in ci.steps(1, [file]) if step.name == "documents")
+        pages = step.command[-1].removeprefix("DOCS=").split()
+        assert page in pages
+        assert len(pages) < len(ci.pages()) / 2
+
     def test_each_turn_runs_rows_of_its_share_and_of_the_change(self):
         for turn in range(20, 30):
             (step,) = (step for step in ci.steps(turn, []) if step.name == "documents")

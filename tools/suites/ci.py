@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from zlib import crc32
 
 from tests.suites import SHARES
@@ -78,20 +79,29 @@ def _long_tests(number: int, changed: list[str] | None) -> Step:
 
 
 def _documents(number: int, changed: list[str] | None) -> Step:
-    """Choose pages: those that have changed, a tenth by a checksum of their names, and those of which rows are run."""
+    """Choose pages: those of which text, pictures or measurements have changed, a tenth, and those with rows to run."""
     if changed is None:
         return Step("documents", "all pages", ["make", "docs-check", "DOCS_FLAGS=--every"])
     flags = f"DOCS_FLAGS=--turn {number} --since {base_of_submission() or 'HEAD'}"
-    if _touches(changed, ("tools/docs_check/", "docs/measured/", "docs/images/")):
+    if _touches(changed, ("tools/docs_check/",)):
         return Step("documents", "all pages", ["make", "docs-check", flags])
+    shown = [re.escape(Path(file).name) for file in changed if file.startswith("docs/images/")]
+    shown += [
+        rf"docs-check: \w+ {re.escape(Path(file).stem)} " for file in changed if file.startswith("docs/measured/")
+    ]
     every = {page.relative_to(ROOT).as_posix(): page for page in pages()}
     chosen = [
         name
         for name, page in every.items()
-        if name in changed or crc32(name.encode()) % SHARES == number % SHARES or has_rows(page)
+        if name in changed or crc32(name.encode()) % SHARES == number % SHARES or has_rows(page) or _holds(page, shown)
     ]
     why = "changed pages, a tenth, and a tenth of the rows"
     return Step("documents", why, ["make", "docs-check", flags, f"DOCS={' '.join(chosen)}"])
+
+
+def _holds(page: Path, patterns: list[str]) -> bool:
+    text = page.read_text(encoding="utf-8")
+    return any(re.search(pattern, text) for pattern in patterns)
 
 
 def _sanitizers(number: int, changed: list[str] | None) -> Step:
