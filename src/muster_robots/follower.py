@@ -36,6 +36,11 @@ class Follower:
         return self._odometer.metres
 
     @property
+    def passed_points(self) -> Sequence[Waypoint]:
+        """The way points that it has passed."""
+        return self._waypoints[: self.passed]
+
+    @property
     def aim(self) -> Waypoint | None:
         """The way point that it is to pass next, or where it stays; None if it has none."""
         return self._waypoints[self.passed] if self.passed < len(self._waypoints) else None

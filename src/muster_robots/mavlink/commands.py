@@ -8,6 +8,7 @@ from muster.motion.port import Waypoint
 from muster_robots.follower import Follower
 from muster_robots.mavlink.drone import Drone
 from muster_robots.mavlink.faults import FaultError, Kind
+from muster_robots.mavlink.fence_detours import MapCheck, within_limits
 from muster_robots.mavlink.mission_items import route_of
 from muster_robots.mavlink.own_limits import read_limits
 from muster_robots.mavlink.position_targets import TURNED_RAD
@@ -26,9 +27,11 @@ def with_limits(drone: Drone) -> Script:
 
 
 def after_limits(
-    drone: Drone, waypoints: Sequence[Waypoint], way: Callable[[Drone, Sequence[Waypoint]], Script]
+    drone: Drone, waypoints: Sequence[Waypoint], check: MapCheck, way: Callable[[Drone, Sequence[Waypoint]], Script]
 ) -> Script:
     """Fly way points if the limits of the autopilot allow them; these are read first if the drone was silent before.
+
+    Areas of its own fence are passed by detours, as far as the mission's map allows these; see `within_limits`.
 
     Raises
     ------
@@ -37,10 +40,11 @@ def after_limits(
     """
     if not drone.limits.is_read:
         yield from with_limits(drone)
-    places = [waypoint.position for waypoint in waypoints]
-    if refusal := drone.refusal(places, drone.telemetry.place):
-        raise FaultError(Kind.OUTSIDE_FENCE, refusal)
-    yield from way(drone, waypoints)
+    assert drone.telemetry.place is not None
+    kept = within_limits(drone, waypoints, drone.telemetry.place, check)
+    if isinstance(kept, str):
+        raise FaultError(Kind.OUTSIDE_FENCE, kept)
+    yield from way(drone, kept)
 
 
 def mission(drone: Drone, waypoints: Sequence[Waypoint]) -> Script:

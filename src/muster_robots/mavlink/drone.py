@@ -101,7 +101,7 @@ class Drone:
     @property
     def has_passed_all(self) -> bool:
         """Whether it has flown the mission that it was given to the end."""
-        return self.route is not None and self.passed >= len(self.route.passed_with)
+        return self.route is not None and self.passed >= self.route.ends_at
 
     def seen(self, *, busy: bool) -> Seen:
         """What it shows of itself; `busy`: a command is under way, so that any mode that Muster asks for is fine."""

@@ -167,7 +167,7 @@ class MavlinkFleet:
         for robot in mission.robots:
             session = self.sessions[robot.id]
             if session.drone.limits.is_read:
-                yield from planned_refusals(session.drone, mission, plan, way)
+                yield from planned_refusals(session.drone, mission, plan, way, session.fence)
 
     def finish(self, at_end: AtEnd, halted: Callable[[], bool]) -> None:
         """Give all drones the last order, and wait until they have landed; at `halted` they hover. `hold`: nothing."""

@@ -16,6 +16,16 @@ RELATIVE = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
 
 
 @dataclass(frozen=True)
+class Detour(Waypoint):
+    """A way point that the bridge adds to an order, and that its sender does not count."""
+
+
+def given_in(waypoints: Sequence[Waypoint]) -> int:
+    """Return how many way points are of the order as it was given."""
+    return sum(not isinstance(waypoint, Detour) for waypoint in waypoints)
+
+
+@dataclass(frozen=True)
 class Item:
     """One item: `params` are its first four parameters, `x` and `y` degrees times 1e7, `z` metres above home."""
 
@@ -38,12 +48,18 @@ class Route:
     first
         the item that it begins with.
     passed_with
-        for each item that is a way point, how many way points are passed when it is reached.
+        for each item that is a way point, how many way points of the order as it was given are passed when it is
+        reached.
     """
 
     items: tuple[Item, ...]
     first: int
     passed_with: dict[int, int]
+
+    @property
+    def ends_at(self) -> int:
+        """The number of way points that are passed at its end."""
+        return max(self.passed_with.values(), default=0)
 
     def passed(self, reached: int) -> int:
         """How many way points are passed when an item is, and with it all before."""
@@ -103,7 +119,7 @@ def route_of(
                 turn = (yaw % 360.0, 0.0, 0.0, 0.0)
                 items.append(Item(mavlink.MAV_CMD_CONDITION_YAW, turn, frame=mavlink.MAV_FRAME_MISSION))
             hold_s, yaw = math.ceil(hold_s), math.nan
-        passed_with[len(items)] = count
+        passed_with[len(items)] = given_in(waypoints[:count])
         params = (hold_s, accept_m, 0.0, yaw)
         items.append(Item(mavlink.MAV_CMD_NAV_WAYPOINT, params, *frame.to_drone(waypoint.position)))
     return Route(tuple(items), first, passed_with)

@@ -110,7 +110,7 @@ class OwnFence:
 
 
 def _at(place: Place) -> str:
-    return f"({', '.join(f'{c:.2f}' for c in place[:2])})"
+    return f"({', '.join(f'{round(c, 2) + 0.0:.2f}' for c in place[:2])})"  # no -0.00
 
 
 def fence_of(items: Sequence[Message], to_map: ToMap | None, *, is_union: bool = False) -> OwnFence:

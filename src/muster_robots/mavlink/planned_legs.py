@@ -13,6 +13,7 @@ from muster.motion.actions import Impossible
 from muster.motion.port import Place, Waypoint
 from muster_robots.mavlink.drone import Drone
 from muster_robots.mavlink.faults import Kind
+from muster_robots.mavlink.fence_detours import MapCheck, within_limits
 
 Way = Callable[[Robot, Place, Place], Sequence[Waypoint] | None]
 """What a robot passes from one place to another, the last included; None where there is no way."""
@@ -64,10 +65,14 @@ def order_of(task: Task, robot: Robot, here: Place, way: Way) -> Sequence[Waypoi
     return waypoints
 
 
-def planned_refusals(drone: Drone, mission: Mission, plan: Plan, way: Way) -> Iterator[tuple[str, str, str]]:
+def planned_refusals(
+    drone: Drone, mission: Mission, plan: Plan, way: Way, check: MapCheck
+) -> Iterator[tuple[str, str, str]]:
     """For each task whose places, or whose planned way, the limits of an autopilot refuse: robot, task, and why.
 
-    A planned way begins where the drone is, and leads on from the last task that is not refused.
+    A planned way begins where the drone is, and leads on from the last task that is not refused. Areas of the
+    autopilot's fence are passed by detours that `check` allows. A straight return that would cross an area is logged:
+    which way the autopilot takes home, and at which height, its own parameters say.
     """
     robot = drone.robot
     refused: dict[str, str] = {}
@@ -82,9 +87,16 @@ def planned_refusals(drone: Drone, mission: Mission, plan: Plan, way: Way) -> It
         order = order_of(tasks[name], robot, here, way) if name in tasks and name not in refused else ""
         if isinstance(order, str) or not order:
             continue
-        places = [waypoint.position for waypoint in drone.flown(order)]
-        if why := drone.refusal(places, here):
-            refused[name] = why
-        else:
-            here = places[-1]
+        kept = within_limits(drone, drone.flown(order), here, check)
+        if isinstance(kept, str):
+            refused[name] = kept
+            continue
+        if len(kept) > len(order):
+            _log.warning(
+                "%s: the way to task %s is flown round its autopilot's fence, longer than planned", robot.id, name
+            )
+        here = kept[-1].position
+    home = drone.home or drone.telemetry.start
+    if refused_home := drone.limits.fence.refusal([home], here):
+        _log.warning("%s: its return home after its last task: %s", robot.id, refused_home)
     yield from ((robot.id, task, f"{Kind.OUTSIDE_FENCE.words}: {why}") for task, why in refused.items())

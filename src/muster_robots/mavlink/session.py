@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from muster.mission.errors import ParameterError
-from muster.motion.port import Place, Telemetry, Waypoint
+from muster.motion.port import Telemetry, Waypoint
 from muster_robots.custody import Custody, Holder, Standing, Wants
 from muster_robots.mavlink.autopilots import AtEnd, autopilot_of
 from muster_robots.mavlink.commands import after_limits, guided, into, mission, stand_down, with_limits
@@ -25,12 +25,11 @@ from muster_robots.mavlink.faults import (
     Reaction,
     StatusText,
 )
+from muster_robots.mavlink.fence_detours import MapCheck
+from muster_robots.mavlink.mission_items import given_in
 from muster_robots.mavlink.position_targets import EVERY_S, position_target
 from muster_robots.mavlink.procedures import telemetry_requests
 from muster_robots.mavlink.requests import RequestSequence, Script
-
-Fence = Callable[[Place, Sequence[Waypoint]], str]
-"""Why a drone may not go from a place through way points; empty if it may."""
 
 _ASK_AGAIN_S = 5.0
 _LET_GO = Kind.LANDED, Kind.DISARMED
@@ -53,7 +52,7 @@ class Session:
         says where it may go.
     """
 
-    def __init__(self, drone: Drone, fence: Fence) -> None:
+    def __init__(self, drone: Drone, fence: MapCheck) -> None:
         self.drone, self.fence = drone, fence
         self.custody = Custody(drone.settings.custody_limits)
         self.faults: list[Fault] = []
@@ -328,7 +327,7 @@ class Session:
             return
         self._fault_detector.require_charge()
         way = guided if self.drone.settings.offboard else mission
-        self._begin(after_limits(self.drone, waypoints, way), now)
+        self._begin(after_limits(self.drone, waypoints, self.fence, way), now)
 
     def _may_interrupt(self, fault: Fault, at_end: AtEnd) -> bool:
         """Whether the reaction to a fault may be broken off: to hover in favour of an end, to return never."""
@@ -379,7 +378,7 @@ class Session:
         if drone.follower is None or telemetry.place is None:
             return
         drone.follower.hear(now, telemetry.place, telemetry.heading)
-        drone.passed = drone.follower.passed
+        drone.passed = given_in(drone.follower.passed_points)
         if now >= self._streamed_s + EVERY_S and telemetry.local is not None:
             self._streamed_s = now
             self._say(position_target(drone.follower.target, drone.target, telemetry.local, now))

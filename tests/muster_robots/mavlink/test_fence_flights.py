@@ -49,33 +49,63 @@ def test_tasks_outside_are_done_by_others_and_refused_before_take_off(areas, off
     assert {state.state for state in flight.states.values()} == {HOME}
 
 
+ROUND = {
+    "concave": (Area(True, ((-10.0, -10.0), (80.0, -10.0), (80.0, 20.0), (20.0, 20.0), (20.0, 80.0), (-10.0, 80.0))),),
+    "wall": (Area(False, ((10.0, 20.0), (60.0, 20.0), (60.0, 24.0), (10.0, 24.0))),),
+    "circle": (Area(False, ((35.0, 35.0),), 20.0), Area(True, ((30.0, 30.0),), 200.0)),
+}
+"""Fences that the straight leg between `EAST` and `NORTH` crosses."""
+EAST, NORTH = Task(id="east", position=(70.0, 0.0, 10.0)), Task(id="north", position=(0.0, 70.0, 10.0))
+DIVIDED = (
+    Area(True, ((-20.0, -20.0), (100.0, -20.0), (100.0, 100.0), (-20.0, 100.0))),
+    Area(False, ((-30.0, 30.0), (110.0, 30.0), (110.0, 34.0), (-30.0, 34.0))),
+)
+"""A fence without a path to what lies north of its wall."""
+
+
+@pytest.mark.long(keep=4)
 @KINDS
-def test_a_planned_leg_that_leaves_a_concave_fence_is_refused_before_take_off(kind):
-    """Each place is inside; the way between the two is not."""
-    arms = ((-10.0, -10.0), (80.0, -10.0), (80.0, 20.0), (20.0, 20.0), (20.0, 80.0), (-10.0, 80.0))
-    tasks = Task(id="east", position=(70.0, 0.0, 10.0)), Task(id="north", position=(0.0, 70.0, 10.0))
-    flight = fly(Faults(), tasks=tasks, kind=kind, count=1, fences={"r_0": Geofence((Area(True, arms),))})
+@pytest.mark.parametrize("offboard", [False, True], ids=["missions", "offboard"])
+@pytest.mark.parametrize("areas", ROUND.values(), ids=ROUND)
+def test_a_leg_that_would_cross_the_fence_is_flown_round_it(areas, offboard, kind):
+    """Each place is allowed; the straight way between the two is not. A breach would be a fault."""
+    flight = fly(Faults(), tasks=(EAST, NORTH), kind=kind, count=1, fences={"r_0": Geofence(areas)}, offboard=offboard)
     assert flight.fleet.faults == []
-    (lost,) = flight.lost
-    assert "straight from" in flight.lost[lost]
-    assert "inside inclusion polygon 1 of the autopilot's fence" in flight.lost[lost]
-    assert flight.done == {"east", "north"} - {lost}
+    assert flight.wrongs == []
+    assert flight.done == {"east", "north"}
+    assert flight.states["r_0"].state == HOME
+
+
+def test_a_detour_and_a_return_over_the_fence_are_told_before_take_off(caplog):
+    across = Area(False, ((30.0, -5.0), (34.0, -5.0), (34.0, 5.0), (30.0, 5.0)))
+    fly(Faults(), tasks=(EAST,), count=1, fences={"r_0": Geofence((across,))})
+    there, back = (record.getMessage() for record in caplog.records if "fence" in record.getMessage())
+    assert there == "r_0: the way to task east is flown round its autopilot's fence, longer than planned"
+    assert back.startswith("r_0: its return home after its last task: straight from (70.00, 0.00) to (0.00, 0.00)")
+
+
+@KINDS
+def test_a_planned_leg_without_a_path_round_the_fence_is_refused_before_take_off(kind):
+    tasks = EAST, NORTH
+    flight = fly(Faults(), tasks=tasks, kind=kind, count=1, fences={"r_0": Geofence(DIVIDED)})
+    assert flight.fleet.faults == []
+    assert set(flight.lost) == {"north"}
+    assert "straight from" in flight.lost["north"]
+    assert "outside exclusion polygon 2 of the autopilot's fence" in flight.lost["north"]
+    assert flight.done == {"east"}
     assert all(event.time_s <= sets_out(flight) for event in flight.events if event.kind == "task_refused")
     assert flight.states["r_0"].state == HOME
 
 
 def test_a_leg_of_a_later_plan_costs_its_task_when_it_is_ordered():
     """r_1 fails, r_0 is planned for what is left: an order that leaves the fence is not sent."""
-    wall = Area(False, ((40.0, 30.0), (90.0, 30.0), (90.0, 34.0), (40.0, 34.0)))
     tasks = Task(id="here", position=(60.0, 0.0, 10.0)), Task(id="there", position=(60.0, 60.0, 10.0))
-    faults = {"r_1": Faults(refuse_arm=True)}
-    fences = {"r_0": Geofence((wall,))}
-    flight = fly(faults, tasks=tasks, fences=fences)
+    flight = fly({"r_1": Faults(refuse_arm=True)}, tasks=tasks, fences={"r_0": Geofence(DIVIDED)})
     assert set(flight.lost) | flight.done == {"here", "there"}
     assert flight.wrongs == []
     (fault,) = [fault for fault in flight.fleet.faults if fault.robot == "r_0"]
     assert fault.kind is Kind.OUTSIDE_FENCE
-    assert "outside exclusion polygon 1" in str(fault)
+    assert "outside exclusion polygon 2" in str(fault)
     assert flight.states["r_0"].state == HOME
 
 
