@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from muster import core
 from muster.motion.grid import Floats
 from muster.motion.kinematics.registry import kinematics_named, limits_of
 from muster.traffic.journeys.travellers import Move, Point, Traveller
-from muster.traffic.roadmaps.edge_conflicts import WithConflicts, annotated, conflicts
+from muster.traffic.roadmaps.edge_conflicts import Known, Near, WithConflicts, annotated, conflicts
 from muster.traffic.roadmaps.lane_sections import ON_LANE_M
 from muster.traffic.roadmaps.roadmap import Indices, Roadmap
 from muster.traffic.roadmaps.robot_spaces import RobotSpaces
@@ -158,9 +159,13 @@ def with_places(roadmap: Roadmap, spaces: RobotSpaces, places: Iterable[Standing
     speeds = np.append(roadmap.speed_mps, roadmap.speeds_along(points[joined[len(roadmap.edges) :]]))
     order = np.lexsort(joined.T[::-1])
     joined = joined[order]
-    start, point, metres = conflicts(points, joined, roadmap.reaches_m, roadmap.sections, layer)
+    was_there, number = order < len(roadmap.edges), np.argsort(order)
+    near = Near(number[roadmap.near_edge], roadmap.reach_point, roadmap.reach_m)
+    before = Known(near, was_there, len(roadmap.points))
+    start, point, metres = conflicts(points, joined, roadmap.reaches_m, roadmap.sections, layer, before)
     return replace(
         roadmap,
+        base=roadmap,
         points=points,
         layer=layer,
         narrow=np.append(roadmap.narrow, np.ones(len(fresh), dtype=np.bool_)),
@@ -193,7 +198,7 @@ def _seen(clear: Callable[[Floats], bool], points: Floats, at: Floats) -> list[i
     for blocked_m in _BLOCKED_M:
         share = np.minimum(1.0, blocked_m / np.maximum(apart, _SAME_M))[:, None]
         begin = at + share * (points - at)
-        seen = [j for j in nearest.tolist() if clear(np.stack([begin[j], points[j]]))]
+        seen = list(islice((j for j in nearest.tolist() if clear(np.stack([begin[j], points[j]]))), _ENTRIES))
         if seen:
-            return seen[:_ENTRIES]
+            return seen
     return []

@@ -76,6 +76,7 @@ class RoadmapPlan:
     _closed: frozenset[str] = field(init=False)
     _priorities: list[str] = field(default_factory=list)
     _known: tuple[Roadmap, frozenset[str], Network] | None = None  # for a roadmap and its closed doors
+    _opened_for: tuple[Roadmap, frozenset[str], Roadmap] | None = None
     _admitting: Lock = field(default_factory=Lock)
     _more_m: list[float] = field(default_factory=list)  # radii of robots that have joined
 
@@ -164,11 +165,20 @@ class RoadmapPlan:
             return known[2]
         roadmap = with_places(base, self.spaces, places)
         if closed:
-            radii_m = roadmap.radii_m[roadmap.edge_layer]
-            roadmap = roadmap.keeping(self.doors.open_ways(roadmap.points[roadmap.edges], closed, radii_m))
+            roadmap = self._opened(roadmap, self._open_base(base))
         made = Network.of(roadmap)
         self._known = base, closed, made
         return made
+
+    def _open_base(self, base: Roadmap) -> Roadmap:
+        """The roadmap without the edges through closed doors, as it was for the last plan where doors are as then."""
+        if self._opened_for is None or self._opened_for[:2] != (base, self._closed):
+            self._opened_for = base, self._closed, self._opened(base, None)
+        return self._opened_for[2]
+
+    def _opened(self, roadmap: Roadmap, base: Roadmap | None) -> Roadmap:
+        radii_m = roadmap.radii_m[roadmap.edge_layer]
+        return roadmap.keeping(self.doors.open_ways(roadmap.points[roadmap.edges], self._closed, radii_m), base)
 
     def _admit(self, travellers: Sequence[Traveller]) -> None:
         """Make layers for robots of other sizes than there were."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from muster import core
-from muster.mission.values.arrays import Floats, Indices
+from muster.mission.values.arrays import Bools, Floats, Indices
 from muster.traffic.roadmaps.lane_sections import Section, held_back
 
 _NEARER_M = 1e-9
@@ -50,12 +50,39 @@ def annotated(roadmap: WithConflicts) -> core.AnnotatedRoadmap:
     )
 
 
+class Near(NamedTuple):
+    """Edges (l,), points (l,) that a robot on each comes near to, and how near (l,), metres."""
+
+    edge: Indices
+    point: Indices
+    metres: Floats
+
+
+class Known(NamedTuple):
+    """The conflicts between edges and points that were there before others were added.
+
+    Parameters
+    ----------
+    near : Near
+        By the numbers of edges and points among all.
+    edges : Bools
+        (m,): which edges were there.
+    points : int
+        The number of points that were there, which come first.
+    """
+
+    near: Near
+    edges: Bools
+    points: int
+
+
 def conflicts(
     points: Floats,
     edges: Indices,
     reach_m: npt.ArrayLike,
     sections: Sequence[Section] = (),
     layer: Indices | None = None,
+    known: Known | None = None,
 ) -> tuple[Indices, Indices, Floats]:
     """For each edge u -> v the points w that a robot on it comes near to: start (m + 1,), point (l,), distance (l,).
 
@@ -75,14 +102,15 @@ def conflicts(
         of lanes, each for one robot: an edge into one comes near to all points there, at distance 0.
     layer
         (n,): the layer of each point, and of the edges that begin there; without it all are of one.
+    known
+        conflicts that are not computed again.
     """
     reaches = np.atleast_2d(np.asarray(reach_m, dtype=np.float64))
     layer = np.zeros(len(points), dtype=np.int64) if layer is None else layer
-    found = [
-        _near(points, edges, np.flatnonzero(layer[edges[:, 0]] == a), np.flatnonzero(layer == b), float(reaches[a, b]))
-        for a in range(len(reaches))
-        for b in range(len(reaches))
-    ]
+    found = [] if known is None else [known.near]
+    for (a, b), reach in np.ndenumerate(reaches):
+        some, others = np.flatnonzero(layer[edges[:, 0]] == a), np.flatnonzero(layer == b)
+        found += [_near(points, edges, *pairs, float(reach)) for pairs in _unknown(some, others, known)]
     held = held_back(points, edges, sections)
     edge = np.concatenate([*(one.edge for one in found), held[:, 0]])
     point = np.concatenate([*(one.point for one in found), held[:, 1]])
@@ -92,15 +120,17 @@ def conflicts(
     return np.searchsorted(edge[order], np.arange(len(edges) + 1)), point[order], metres[order]
 
 
-class _Near(NamedTuple):
-    """Edges, points that a robot on each comes near to, and how near."""
+def _unknown(edges: Indices, points: Indices, known: Known | None) -> Iterator[tuple[Indices, Indices]]:
+    """Edges and points, by number, of each of which all conflicts are to be computed."""
+    if known is None:
+        yield edges, points
+        return
+    before = known.edges[edges]
+    yield edges[~before], points
+    yield edges[before], points[points >= known.points]
 
-    edge: Indices
-    point: Indices
-    metres: Floats
 
-
-def _near(points: Floats, edges: Indices, some: Indices, others: Indices, reach_m: float) -> _Near:
+def _near(points: Floats, edges: Indices, some: Indices, others: Indices, reach_m: float) -> Near:
     """For some edges, by number, which of some points, by number, are nearer than `reach_m`."""
     edge, point = _candidates(points, edges, some, others, reach_m)
     from_u, along = points[point] - points[edges[edge, 0]], points[edges[edge, 1]] - points[edges[edge, 0]]
@@ -109,7 +139,7 @@ def _near(points: Floats, edges: Indices, some: Indices, others: Indices, reach_
     metres = np.hypot(*(from_u - share[:, np.newaxis] * along).T)
     metres[point == edges[edge, 1]] = 0.0
     near = (metres < reach_m) & (metres < np.hypot(*from_u.T) - _NEARER_M)
-    return _Near(edge[near], point[near], metres[near])
+    return Near(edge[near], point[near], metres[near])
 
 
 def _candidates(

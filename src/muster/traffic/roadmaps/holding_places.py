@@ -51,6 +51,16 @@ def passable(centres: Floats, points: Floats, edges: Indices, hits: tuple[Indice
     return np.asarray(least >= most)
 
 
+def far_m(centres: Floats, points: Floats, edges: Indices, reach_m: float) -> Floats:
+    """How far around each centre others look for a way past it: (c,), metres. Parameters as of `passable`."""
+    from scipy.spatial import cKDTree
+
+    longest = np.full(len(points), reach_m)
+    lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
+    np.maximum.at(longest, edges.ravel(), lengths.repeat(2))
+    return np.asarray(_AROUND * longest[cKDTree(points).query(centres)[1]] + reach_m)
+
+
 class _Neighbourhoods:
     """The points around each centre: copies of parts of a roadmap, side by side.
 
@@ -69,12 +79,9 @@ class _Neighbourhoods:
     def of(cls, centres: Floats, points: Floats, edges: Indices, reach_m: float) -> _Neighbourhoods:
         from scipy.spatial import cKDTree
 
-        longest = np.full(len(points), reach_m)
-        lengths = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1)
-        np.maximum.at(longest, edges.ravel(), lengths.repeat(2))
-        tree = cKDTree(points)
-        far_m = _AROUND * longest[tree.query(centres)[1]] + reach_m
-        found: Any = tree.query_ball_point(centres, far_m, return_sorted=True)
+        found: Any = cKDTree(points).query_ball_point(
+            centres, far_m(centres, points, edges, reach_m), return_sorted=True
+        )
         centre = np.repeat(np.arange(len(centres)), [len(some) for some in found])
         point = np.concatenate(found).astype(np.int64)
         near = np.linalg.norm(centres[centre] - points[point], axis=1) < reach_m

@@ -81,6 +81,9 @@ class Roadmap:
         of the first points of each layer, the nodes of given lanes; empty where it was made from free space.
     sections
         of lanes with a capacity, each for one robot: edges into one are said to come near to all points there.
+    base
+        the roadmap to which points and edges were added, if this one was made so: its points come first, and it has no
+        other edges between them.
     """
 
     points: Floats
@@ -97,9 +100,10 @@ class Roadmap:
     speed_mps: Floats
     names: tuple[str, ...] = ()
     sections: tuple[Section, ...] = ()
+    base: Roadmap | None = None
 
-    def keeping(self, edges: Bools) -> Roadmap:
-        """The roadmap with some of its edges (m,) only."""
+    def keeping(self, edges: Bools, base: Roadmap | None = None) -> Roadmap:
+        """The roadmap with some of its edges (m,) only; `base` is that of which the same edges are left out."""
         counts = np.diff(self.reach_start)
         reached = np.repeat(edges, counts)
         return replace(
@@ -110,6 +114,7 @@ class Roadmap:
             reach_point=self.reach_point[reached],
             reach_m=self.reach_m[reached],
             speed_mps=self.speed_mps[edges],
+            base=base,
         )
 
     @cached_property
@@ -150,19 +155,46 @@ class Roadmap:
         return ~np.isin(start * n + end, end * n + start)
 
     @cached_property
+    def near_edge(self) -> Indices:
+        """(l,): the edge on which a robot comes near to each point of `reach_point`."""
+        return np.repeat(np.arange(len(self.edges)), np.diff(self.reach_start))
+
+    @cached_property
     def passed(self) -> Bools:
         """(k, n): whether robots of each layer get past one that rests at a point."""
         from muster.traffic.roadmaps.holding_places import passable
 
-        found = np.ones((len(self.radii_m), len(self.points)), dtype=np.bool_)
-        edge_of, local = np.repeat(np.arange(len(self.edges)), np.diff(self.reach_start)), self._number_in_layer
+        found, local = np.ones((len(self.radii_m), len(self.points)), dtype=np.bool_), self._number_in_layer
+        if self.base is not None:
+            found[:, : len(self.base.points)] = self.base.passed
         for (a, b), reach_m in np.ndenumerate(self.reaches_m):
-            centres, others = self.points[self.layer == a], self.points[self.layer == b]
+            centres, others = np.flatnonzero(self.layer == a), np.flatnonzero(self.layer == b)
             own = np.flatnonzero(self.edge_layer == b)
-            near = (self.edge_layer[edge_of] == b) & (self.layer[self.reach_point] == a)
-            hits = np.searchsorted(own, edge_of[near]), local[self.reach_point[near]]
-            found[b, self.layer == a] = passable(centres, others, local[self.edges[own]], hits, float(reach_m))
+            if self.base is not None:
+                centres = centres[self._is_new_around(self.base, centres, b, float(reach_m))]
+            of_centre = np.full(len(self.points), -1)
+            of_centre[centres] = np.arange(len(centres))
+            near = (self.edge_layer[self.near_edge] == b) & (of_centre[self.reach_point] >= 0)
+            hits = np.searchsorted(own, self.near_edge[near]), of_centre[self.reach_point[near]]
+            edges = local[self.edges[own]]
+            found[b, centres] = passable(self.points[centres], self.points[others], edges, hits, float(reach_m))
         return found
+
+    def _is_new_around(self, base: Roadmap, centres: Indices, layer: int, reach_m: float) -> Bools:
+        """Return which points have points or edges of a layer around them, for `passable`, that the base has not."""
+        from scipy.spatial import cKDTree
+
+        from muster.traffic.roadmaps.holding_places import far_m
+
+        there, local = np.flatnonzero(self.layer == layer), self._number_in_layer
+        before = there[there < len(base.points)]
+        if not len(centres) or not len(before):
+            return np.ones(len(centres), dtype=np.bool_)
+        at, fresh = self.points[centres], self.points[there[len(before) :]]
+        now_m = far_m(at, self.points[there], local[self.edges[self.edge_layer == layer]], reach_m)
+        was_m = far_m(at, self.points[before], local[base.edges[base.edge_layer == layer]], reach_m)
+        fresh_m = cKDTree(fresh).query(at)[0] if len(fresh) else np.inf
+        return np.asarray((centres >= len(base.points)) | (now_m != was_m) | (fresh_m <= now_m))
 
     @cached_property
     def _number_in_layer(self) -> Indices:
