@@ -31,6 +31,7 @@ BENCHES: Mapping[str, str] = MappingProxyType(
         "standing": "standing:hour",
         "standing-live": "standing:live",
         "standing-charging": "standing:charging",
+        "standing-rule": "standing:by_nearest_free",
         "auction": "auction:auction",
         "ros1": "ros1:ros1",
         "traffic": "joint_paths:traffic",

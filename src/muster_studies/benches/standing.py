@@ -15,6 +15,8 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from random import Random
 
+import numpy as np
+
 from muster.execution import Standing
 from muster.execution.reports.report import Report
 from muster.mission.model import Event, Mission, Robot, Rules, Station, Task
@@ -23,6 +25,7 @@ from muster.planning.solve import solve
 from muster.running.simulation import LOOK_S, Simulation
 from muster.state.orders import OrdersReport
 from muster_studies.benches.measurement import Measurement
+from muster_studies.benches.nearest_free import seconds_until_done
 
 ROBOTS, SIZE_M, SPEED_MPS, WORK_S = 20, (60.0, 40.0), 1.0, 10.0
 RATE, BURST_RATE = 1.2, 2.0
@@ -161,6 +164,27 @@ def charging(runs: int) -> list[Measurement]:
         _once(f"{what}: least level", "%", 100 * least, "> 0", f"reserve {100 * RESERVE:.0f} %; {visits} charges"),
         _once(f"{what}: processor time", "s", shift.cpu_s, "< 3600"),
     ]
+
+
+def by_nearest_free(runs: int) -> list[Measurement]:
+    """The same orders by the rule of `nearest_free`, which plans nothing; once."""
+    found = []
+    for what, mission, until_s in (
+        (f"an hour of {ROBOTS} robots", fleet(0), HOUR_S),
+        (f"10 minutes of {ROBOTS} robots", fleet(0), LIVE_S),
+        (f"an hour of {ROBOTS} robots that charge", fleet_that_charges(0), HOUR_S),
+    ):
+        begin_s, came = time.process_time(), list(orders(0, until_s))
+        took_s = seconds_until_done(mission, came)
+        cpu_s = time.process_time() - begin_s
+        ends_s = max(event.at_s + took for event, took in zip(came, took_s, strict=True))
+        half_s, most_of_all_s = np.quantile(took_s, [0.5, 0.95]).tolist()
+        found += [
+            _once(f"rule, {what}: half done after", "s", half_s, "", f"95 % after {most_of_all_s:.0f} s"),
+            _once(f"rule, {what}: orders done an hour", "", 3600 * len(took_s) / ends_s, ""),
+            _once(f"rule, {what}: an order", "ms", 1000 * cpu_s / len(took_s), "< 3"),
+        ]
+    return found
 
 
 def charging_per_hour(mission: Mission, came: Sequence[Event]) -> float:
