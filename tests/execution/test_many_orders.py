@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 from tests.execution.world import World, carry_out
 
+import muster
 from muster.execution import Executor, Standing, travel_of
 from muster.execution.replanning import worthwhile as gains
 from muster.execution.replanning.insertion import Insertion
@@ -151,6 +152,23 @@ def test_a_task_that_its_robot_is_on_the_way_to_changes_for_more(monkeypatch, he
     assert worthwhile(problem, now, better, headings) == (now if heading == "near" else better)
     monkeypatch.setattr(gains, "SWITCH_GAIN_UNDER_WAY", 1.5)
     assert worthwhile(problem, now, better, headings) == (better if changes else now)
+
+
+@pytest.mark.parametrize("better", [[[0, 1], [3, 2]], [[0, 1, 2], [3]]], ids=["later", "by another"])
+def test_a_robot_that_is_nearly_at_a_task_does_it_first_and_the_rest_of_a_change_holds(better):
+    problem = line(10, 20, 49, 90)
+    now = [[0, 3], [2, 1]]  # 170 m
+    assert worthwhile(problem, now, better, {"r_1": Heading("t2", True)}) == [[0, 1], [2, 3]]  # 112 m
+
+
+def test_a_burst_of_orders_is_improved_while_robots_are_nearly_at_their_first_ones():
+    """Some robot of ten nearly always is: that must not keep all others from better routes."""
+    mission = fleet(10, speed_mps=2.0)
+    standing = Standing(orders=orders(60), until_s=2.0)
+    plan = muster.solve(mission, "greedy")
+    report = muster.simulate(mission, plan, standing=standing)
+    assert len(report.tasks_done) == 60
+    assert report.orders.improved > 0
 
 
 def test_exchanges_that_do_not_pay_are_left_though_others_do():

@@ -56,7 +56,8 @@ def worthwhile(
         return mean * sum(SWITCH_GAIN_UNDER_WAY if problem.tasks[j].id in on_way else SWITCH_GAIN for j in moved)
 
     for robots in (*_exchanges(problem, now, then), range(len(now))):
-        tried = [list(then[i] if i in robots else route) for i, route in enumerate(best)]
+        changed = [list(then[i] if i in robots else route) for i, route in enumerate(best)]
+        tried = _with_near_first(problem, changed, near)
         moved = _moved(now, tried)
         if tried == best or (most is not None and len(moved) > most) or not _keeps(problem, tried, near):
             continue
@@ -101,6 +102,20 @@ def robots_of(routes: Sequence[Sequence[int]]) -> dict[int, frozenset[int]]:
         for j in route:
             robots.setdefault(j, set()).add(i)
     return {j: frozenset(team) for j, team in robots.items()}
+
+
+def _with_near_first(problem: Problem, routes: Routes, near: Mapping[int, int]) -> Routes:
+    """The routes in which robots that are nearly at a task go on to it, and nobody else does a task for one robot."""
+    kept = [list(route) for route in routes]
+    for i, j in near.items():
+        begun = len(problem.beginning(i))
+        if kept[i][begun : begun + 1] == [j]:
+            continue
+        for route in kept if j not in kept[i] else [kept[i]]:
+            if j in route:
+                route.remove(j)
+        kept[i].insert(begun, j)
+    return kept
 
 
 def _keeps(problem: Problem, routes: Routes, near: Mapping[int, int]) -> bool:
