@@ -31,6 +31,8 @@ BENCHES: Mapping[str, str] = MappingProxyType(
         "standing": "standing:hour",
         "standing-live": "standing:live",
         "standing-charging": "standing:charging",
+        "lifelong": "lifelong_lanes:small",
+        "lifelong-large": "lifelong_lanes:large",
         "standing-rule": "standing:by_nearest_free",
         "auction": "auction:auction",
         "ros1": "ros1:ros1",

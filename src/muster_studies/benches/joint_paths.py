@@ -126,12 +126,12 @@ def _map(name: str, make: Callable[[], Bools]) -> Bools:
     return read_map(Path(folder) / name) if folder else make()
 
 
-def warehouse() -> Bools:
-    """Twenty rows of ten racks of 10 x 2 cells, aisles of one cell, 25 free columns on each side: 63 x 161."""
-    blocked = np.ones((63, 161), dtype=np.bool_)
+def warehouse(rows: int = 20, racks: int = 10, beside: int = 25) -> Bools:
+    """Rows of racks of 10 x 2 cells, aisles of one cell, and free columns on each side: 63 x 161 by default."""
+    blocked = np.ones((3 * rows + 3, 11 * racks + 2 * beside + 1), dtype=np.bool_)
     blocked[1:-1, 1:-1] = False
-    for row in range(2, 62, 3):
-        for column in range(26, 135, 11):
+    for row in range(2, 3 * rows + 2, 3):
+        for column in range(beside + 1, beside + 11 * racks, 11):
             blocked[row : row + 2, column : column + 10] = True
     return blocked
 
