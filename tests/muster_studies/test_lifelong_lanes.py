@@ -34,7 +34,6 @@ def test_places_are_free_cells_and_lanes_join_those_side_by_side():
     assert len(burst.mission.lanes.edges) == len(burst.pairs)
 
 
-@pytest.mark.long
 def test_muster_does_as_much_as_the_loop_without_a_contact():
     rows = {row.name.partition(": ")[2]: row for row in compared((2, 1, 4), 6)}
     assert rows["orders lost"].median == rows["contacts"].median == 0
