@@ -203,14 +203,14 @@ def compared(size: tuple[int, int, int], robots: int, seed: int = 0) -> list[Mea
     what, rate = f"{robots} robots on {len(burst.cells):,} nodes", len(orders) / loop.steps
     lost, step_s = len(orders) - len(report.tasks_done), float(np.quantile(steps_s, 0.99))
     return [
-        _row(f"{what}: orders lost", "of all", lost, "0", f"{len(orders)} came; loop: {len(orders) - done}"),
-        _row(f"{what}: contacts", "", report.contacts, "0"),
-        _row(f"{what}: orders done a second", "", len(orders) / last_s, f">= {rate:.2f}", "the loop's"),
-        _row(f"{what}: built in", "s", built_s, "< 2"),
-        _row(f"{what}: CPU a simulated s", "ms", 1000 * own_s / last_s, "", f"loop: {1000 * loop_s / loop.steps:.1f}"),
-        _row(f"{what}: a step, 99 %", "ms", 1000 * step_s, "< 50", "control thread"),
+        Measurement.once(
+            f"{what}: orders lost", "of all", lost, "0", f"{len(orders)} came; loop: {len(orders) - done}"
+        ),
+        Measurement.once(f"{what}: contacts", "", report.contacts, "0"),
+        Measurement.once(f"{what}: orders done a second", "", len(orders) / last_s, f">= {rate:.2f}", "the loop's"),
+        Measurement.once(f"{what}: built in", "s", built_s, "< 2"),
+        Measurement.once(
+            f"{what}: CPU a simulated s", "ms", 1000 * own_s / last_s, "", f"loop: {1000 * loop_s / loop.steps:.1f}"
+        ),
+        Measurement.once(f"{what}: a step, 99 %", "ms", 1000 * step_s, "< 50", "control thread"),
     ]
-
-
-def _row(name: str, unit: str, value: float, aim: str, note: str = "") -> Measurement:
-    return Measurement.over_runs(name, unit, [value], aim, note)

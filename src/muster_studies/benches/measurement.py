@@ -25,3 +25,8 @@ class Measurement:
     def over_runs(cls, name: str, unit: str, values: Sequence[float], aim: str, note: str = "") -> Self:
         """The measurement of the values of several runs."""
         return cls(name, unit, statistics.median(values), min(values), max(values), len(values), aim, note)
+
+    @classmethod
+    def once(cls, name: str, unit: str, value: float, aim: str, note: str = "") -> Self:
+        """The measurement of a single run."""
+        return cls.over_runs(name, unit, [value], aim, note)

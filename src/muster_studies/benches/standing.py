@@ -133,8 +133,8 @@ def hour(runs: int) -> list[Measurement]:
     growth_mb, most = shift.end_mb - shift.half_way_mb, most_per_hour(shift.orders.taken)
     return [
         *_orders(what, shift, most),
-        _once(f"{what}: memory, second half", "MB", growth_mb, "< 5", f"{shift.half_way_mb:.0f} MB before"),
-        _once(f"{what}: processor time", "s", shift.cpu_s, "< 3600"),
+        Measurement.once(f"{what}: memory, second half", "MB", growth_mb, "< 5", f"{shift.half_way_mb:.0f} MB before"),
+        Measurement.once(f"{what}: processor time", "s", shift.cpu_s, "< 3600"),
     ]
 
 
@@ -146,8 +146,8 @@ def live(runs: int) -> list[Measurement]:
     note = f"median {lag.median_s:.3f} s, 95 % {lag.p95_s:.3f} s"
     return [
         *_orders(what, shift, most_per_hour(shift.orders.taken)),
-        _once(f"{what}: clock behind at most", "s", lag.most_s, "< 0.5", note),
-        _once(f"{what}: processor time", "s", shift.cpu_s, "< 600"),
+        Measurement.once(f"{what}: clock behind at most", "s", lag.most_s, "< 0.5", note),
+        Measurement.once(f"{what}: processor time", "s", shift.cpu_s, "< 600"),
     ]
 
 
@@ -160,9 +160,11 @@ def charging(runs: int) -> list[Measurement]:
     what, most = f"an hour of {ROBOTS} robots that charge", charging_per_hour(mission, [*orders(0, HOUR_S)])
     return [
         *_orders(what, shift, most),
-        _once(f"{what}: of what any fleet could do", "%", 100 * shift.orders.done_per_hour / most, ">= 90"),
-        _once(f"{what}: least level", "%", 100 * least, "> 0", f"reserve {100 * RESERVE:.0f} %; {visits} charges"),
-        _once(f"{what}: processor time", "s", shift.cpu_s, "< 3600"),
+        Measurement.once(f"{what}: of what any fleet could do", "%", 100 * shift.orders.done_per_hour / most, ">= 90"),
+        Measurement.once(
+            f"{what}: least level", "%", 100 * least, "> 0", f"reserve {100 * RESERVE:.0f} %; {visits} charges"
+        ),
+        Measurement.once(f"{what}: processor time", "s", shift.cpu_s, "< 3600"),
     ]
 
 
@@ -180,9 +182,9 @@ def by_nearest_free(runs: int) -> list[Measurement]:
         ends_s = max(event.at_s + took for event, took in zip(came, took_s, strict=True))
         half_s, most_of_all_s = np.quantile(took_s, [0.5, 0.95]).tolist()
         found += [
-            _once(f"rule, {what}: half done after", "s", half_s, "", f"95 % after {most_of_all_s:.0f} s"),
-            _once(f"rule, {what}: orders done an hour", "", 3600 * len(took_s) / ends_s, ""),
-            _once(f"rule, {what}: an order", "ms", 1000 * cpu_s / len(took_s), "< 3"),
+            Measurement.once(f"rule, {what}: half done after", "s", half_s, "", f"95 % after {most_of_all_s:.0f} s"),
+            Measurement.once(f"rule, {what}: orders done an hour", "", 3600 * len(took_s) / ends_s, ""),
+            Measurement.once(f"rule, {what}: an order", "ms", 1000 * cpu_s / len(took_s), "< 3"),
         ]
     return found
 
@@ -204,15 +206,13 @@ def _orders(what: str, shift: Shift, most: float) -> list[Measurement]:
     seen = shift.orders
     routed, done = seen.until_in_route, seen.until_done
     return [
-        _once(f"{what}: orders lost", "of all", shift.lost + seen.open, "0", f"{seen.taken} came, {seen.done} done"),
-        _once(f"{what}: 95 % in a route after", "s", routed.p95_s, "< 1", f"at most {routed.most_s:.2f} s"),
-        _once(f"{what}: half done after", "s", done.median_s, "", f"95 % after {done.p95_s:.0f} s"),
-        _once(f"{what}: orders done an hour", "", seen.done_per_hour, "", f"any fleet: at most {most:,.0f}"),
+        Measurement.once(
+            f"{what}: orders lost", "of all", shift.lost + seen.open, "0", f"{seen.taken} came, {seen.done} done"
+        ),
+        Measurement.once(f"{what}: 95 % in a route after", "s", routed.p95_s, "< 1", f"at most {routed.most_s:.2f} s"),
+        Measurement.once(f"{what}: half done after", "s", done.median_s, "", f"95 % after {done.p95_s:.0f} s"),
+        Measurement.once(f"{what}: orders done an hour", "", seen.done_per_hour, "", f"any fleet: at most {most:,.0f}"),
     ]
-
-
-def _once(name: str, unit: str, value: float, aim: str, note: str = "") -> Measurement:
-    return Measurement.over_runs(name, unit, [value], aim, note)
 
 
 def _memory_mb() -> float:
