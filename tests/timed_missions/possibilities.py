@@ -31,6 +31,11 @@ class Possibilities:
         wanted = {self.number[name] for name in names}
         return any(wanted <= done for done in self.done)
 
+    def least_left_out(self, names):
+        """How many of these tasks every plan leaves out."""
+        wanted = {self.number[name] for name in names}
+        return min(len(wanted - done) for done in self.done)
+
     def wrong_alone(self, said):
         """What is wrong with the tasks that are said to be impossible by themselves, and with their reasons."""
         lost = {item.task for item in said}
@@ -42,10 +47,13 @@ class Possibilities:
                     yield f"{item.task} {reason}: a false sentence"
 
     def wrong_together(self, found, lost):
-        """What is wrong with a conflict, or with there being none."""
+        """What is wrong with a conflict and with shortfalls, or with there being none."""
         conflict, tasks = found.conflict, {task.id for task in self.mission.tasks} - set(lost)
+        for short in found.shortfalls:
+            if self.least_left_out(short.tasks) < short.left_out:
+                yield f"{short}: a plan leaves out fewer"
         if conflict is None:
-            if not found.unknown and not self.can(tasks):
+            if not found.proven and not found.unknown and not self.can(tasks):
                 yield f"one plan is said to do {sorted(tasks)}"
             return
         names = set(conflict.tasks)

@@ -49,7 +49,7 @@ class Conflict:
 
 @dataclass(frozen=True)
 class Together:
-    """Whether one plan can do all tasks that are possible by themselves: it can if there is neither conflict nor doubt.
+    """Whether one plan can do all tasks that are possible by themselves: it can if nothing here says otherwise.
 
     `unknown` tells that no plan of them all was found, and none was proven impossible. `shortfalls` are the proofs that
     their work is too much for the robots; `remedies` are changes of the mission that lift all of these.
