@@ -47,6 +47,10 @@ class TaskSales:
         sale = rule.winner()
         return None if sale is None else self._sold(sale)
 
+    def may_bid(self, robot: int, task: int) -> bool:
+        """Whether a robot can win a task in this round."""
+        return self.can_win([(robot, task)])
+
     def can_win(self, pairs: Sequence[tuple[int, int]]) -> bool:
         """Whether a robot can win a task in this round; more than one pair cannot be won at once."""
         if len(pairs) != 1:

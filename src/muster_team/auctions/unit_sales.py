@@ -61,18 +61,22 @@ class UnitSales:
         ranked = (self._sold(unit, best) for unit, best in in_turn(offers, self._terms))
         return next((sold for sold in ranked if sold is not None), None)
 
+    def may_bid(self, robot: int, task: int) -> bool:
+        """Whether a robot can win the task of a unit in this round, or may ask for a place in it."""
+        unit = self._problem.model.unit[task]
+        if unit not in self._for_sale() or not self._problem.may(robot, task):
+            return False
+        return not self._auction.is_alone(unit) or self.can_win([(robot, task)])
+
     def can_win(self, pairs: Sequence[tuple[int, int]]) -> bool:
-        """Whether robots can win the tasks of a unit in this round, or one of them a place in it."""
+        """Whether robots can win the tasks of a unit in this round, each its own."""
         units = {self._problem.model.unit[task] for _, task in pairs}
-        if len(units) != 1 or not all(self._problem.may(robot, task) for robot, task in pairs):
+        if len(units) != 1 or not units.issubset(self._for_sale()):
             return False
-        (unit,) = units
-        if unit not in self._for_sale():
+        bid = self._auction.best_bid(units.pop(), sorted({robot for robot, _ in pairs}))
+        if bid is None or sorted((task, robot) for robot, task in pairs) != _members(bid):
             return False
-        if len(pairs) == 1 and not self._auction.is_alone(unit):
-            return True
-        bid = self._auction.best_bid(unit, sorted({robot for robot, _ in pairs}))
-        return bid is not None and self._auction.holds(bid)
+        return self._auction.holds(bid)
 
     def award(self, sold: Sold) -> None:
         """Put a unit into the routes of its winners."""
@@ -140,8 +144,7 @@ class UnitSales:
 
     def _assignments(self, bid: CoalitionBid) -> list[tuple[str, str]]:
         """Robots and their tasks, in tie order."""
-        found = sorted((task, robot) for task, robot, _ in bid.insertion.members)
-        return [(self._problem.robots[robot].id, self._problem.tasks[task].id) for task, robot in found]
+        return [(self._problem.robots[robot].id, self._problem.tasks[task].id) for task, robot in _members(bid)]
 
     def _bid_of(self, sold: Sold) -> CoalitionBid:
         robots = sorted({self._problem.robot_index[robot] for robot, _ in sold.assignments})
@@ -166,3 +169,8 @@ class _Winners:
 
     key: tuple[bool, float]
     robots: tuple[int, ...]
+
+
+def _members(bid: CoalitionBid) -> list[tuple[int, int]]:
+    """The tasks of a bid, each with a robot of it, ascending."""
+    return sorted((task, robot) for task, robot, _ in bid.insertion.members)

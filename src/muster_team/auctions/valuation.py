@@ -245,19 +245,15 @@ class AuctionValuer(TeamValuer):
         return [self.problem.tasks[j].id for j in self.sales.routes[self._robots[robot]]]
 
     def bids_fault(self, said: RoundBids) -> str:
-        wrong = self._no_such_task([task for task, _ in said.bids])
-        return wrong or next(filter(None, (self._not_won(((said.robot, task),)) for task, _ in said.bids)), "")
+        wrong, robot = self._no_such_task([task for task, _ in said.bids]), self._robots[said.robot]
+        refused = (task for task, _ in said.bids if not wrong and not self.sales.may_bid(robot, self._tasks[task]))
+        return wrong or next((_not_for_sale([(said.robot, task)]) for task in refused), "")
 
     def sale_fault(self, sold: Sold) -> str:
-        wrong = self._no_such_task(list(dict.fromkeys(task for _, task in sold.assignments)))
-        return wrong or self._not_won(sold.assignments)
-
-    def _not_won(self, assignments: Sequence[tuple[str, str]]) -> str:
-        """Why robots cannot win these tasks now, each its own; empty: they can."""
-        pairs = [(self._robots[robot], self._tasks[task]) for robot, task in assignments]
-        if self.sales.can_win(pairs):
-            return ""
-        return ", ".join(f"{shown(task)} for {shown(robot)}" for robot, task in assignments) + ", which is not for sale"
+        if wrong := self._no_such_task(list(dict.fromkeys(task for _, task in sold.assignments))):
+            return wrong
+        pairs = [(self._robots[robot], self._tasks[task]) for robot, task in sold.assignments]
+        return "" if self.sales.can_win(pairs) else _not_for_sale(sold.assignments)
 
     def spans(self) -> Mapping[str, tuple[float, float]]:
         return self.sales.spans() if isinstance(self.sales, UnitSales) else {}
@@ -265,3 +261,8 @@ class AuctionValuer(TeamValuer):
     def _refuse_bid(self, problem: Problem) -> None:
         if problem.core.is_timed:
             bid_of(problem, self.terms)
+
+
+def _not_for_sale(assignments: Sequence[tuple[str, str]]) -> str:
+    """Why robots cannot win these tasks now, each its own."""
+    return ", ".join(f"{shown(task)} for {shown(robot)}" for robot, task in assignments) + ", which is not for sale"
