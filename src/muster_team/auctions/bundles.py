@@ -99,16 +99,13 @@ class BundleValuer(TeamValuer):
         return "" if fits else "a bid for tasks that are not offered to it"
 
     def sale_fault(self, sold: Sold) -> str:
-        tasks = [task for _, task in sold.assignments]
-        if wrong := self._no_such_task(tasks):
+        if wrong := self._no_such_task([sold.task]):
             return wrong
-        sellable = all(
-            self._tasks[task] not in self._closed
-            and self.problem.may(self._robots[robot], self._tasks[task])
-            and not any(self._tasks[task] in route for route in self._routes)
-            for robot, task in sold.assignments
-        )
-        return "" if sellable else f"{sold.what} for {sold.winner}, which is not for sale"
+        robot, task = self._robots[sold.robot], self._tasks[sold.task]
+        is_for_sale = task not in self._closed and not any(task in route for route in self._routes)
+        if is_for_sale and self.problem.may(robot, task) and not sold.others:
+            return ""
+        return f"{sold.what} for {sold.winner}, which is not for sale"
 
     def award(self, sold: Sold) -> None:
         self._routes[self._robots[sold.robot]].append(self._tasks[sold.task])

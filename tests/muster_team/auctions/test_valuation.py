@@ -1,5 +1,6 @@
 """What a robot admits of others' bids and sales, it can also take over."""
 
+from dataclasses import replace
 from itertools import chain, combinations
 from random import Random
 
@@ -7,14 +8,16 @@ import pytest
 from tests.muster_team.test_teams_without_a_centre import lifting
 from tests.muster_team.trials.random_missions import random_mission, with_times
 
+from muster.allocation.auctions import consensus_bundle
 from muster.allocation.auctions.auction import Parameters
 from muster.model.problem import Problem
+from muster_team.auctions.bundles import BundleValuer
 from muster_team.auctions.valuation import AuctionValuer, Opening
 from muster_team.knowledge.messages import Sold
 
 
-def opened(problem):
-    valuer = AuctionValuer(problem, Parameters(), problem.robots[0].id)
+def opened(problem, kind=AuctionValuer, parameters=None):
+    valuer = kind(problem, parameters or Parameters(), problem.robots[0].id)
     valuer.begin(Opening())
     return valuer
 
@@ -38,6 +41,21 @@ def test_what_is_found_to_be_for_sale_can_be_awarded(seed):
             admitted += 1
             assert all(task in valuer.route(robot) for robot, task in sold.assignments)
     assert 0 < admitted < len(sales)
+
+
+def test_bundles_are_awarded_task_by_task():
+    mission = lifting(2)
+    problem = Problem.compile(
+        replace(mission, tasks=tuple(replace(t, robots_needed=None) for t in mission.tasks))
+    ).ready()
+    admitted = []
+    for sold in every_sale(problem.mission):
+        valuer = opened(problem, BundleValuer, consensus_bundle.Parameters())
+        if not valuer.sale_fault(sold):
+            valuer.award(sold)
+            admitted.append(sold.assignments)
+            assert [valuer.route(robot) for robot, _ in sold.assignments] == [[task] for _, task in sold.assignments]
+    assert len(admitted) == 4
 
 
 def test_a_place_in_a_team_is_bid_for_by_one_robot_and_won_by_the_team():
