@@ -18,6 +18,7 @@ from muster.mission.reading.yaml_reader import parse_data
 from muster.mission.records import findings
 from muster.mission.value_types import Fault, shown
 from muster.mission.value_types import Path as Keys
+from muster.mission.yaml_writer import YAML_SUFFIXES
 
 _HALF_CHARACTER = re.compile("[\ud800-\udfff]")
 _HERE = "mission"  # the folder of the mission's own file, within the worker's
@@ -91,7 +92,7 @@ def _file_name(name: str) -> Path:
     """The file name of a mission in messages."""
     plain = name.isprintable() and "/" not in name and not name.startswith(".")
     stem = name if plain else "mission"
-    return Path(stem if stem.endswith((".yaml", ".yml")) else f"{stem}.yaml")
+    return Path(stem if stem.endswith(YAML_SUFFIXES) else f"{stem}.yaml")
 
 
 def _astray(data: Mapping[str, Any], files: Collection[str]) -> Iterator[Fault]:

@@ -13,7 +13,7 @@ from muster.mission.reading.thesis_csv import read_csv_for
 from muster.mission.reading.yaml_reader import parse_yaml
 from muster.mission.texts.text_files import read_text
 from muster.mission.value_types import shown
-from muster.mission.yaml_writer import yaml_text
+from muster.mission.yaml_writer import YAML_SUFFIXES, yaml_text
 from muster_robots.ros1.ros import rospy
 
 Heard = Callable[[int], Sequence[Mapping[str, object]]]
@@ -62,7 +62,7 @@ def mission_on(parameter: str, load: Load, heard: Heard) -> Mission:
     if path.suffix.lower() == ".csv":
         table = rospy.get_param(f"{parameter.rpartition('/')[0]}/suitability", None)
         return read_csv_for(heard, path, None if table is None else Path(str(table)))
-    if path.suffix.lower() in (".yaml", ".yml") and path.is_file():
+    if path.suffix.lower() in YAML_SUFFIXES and path.is_file():
         return parse_yaml(read_text(path), path, heard)
     return load(said)
 

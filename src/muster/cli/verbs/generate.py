@@ -12,13 +12,13 @@ import click
 
 from muster.cli.options.common import format_option, quiet_option
 from muster.mission.errors import ParameterError
+from muster.mission.yaml_writer import YAML_SUFFIXES, yaml_text
 
 if TYPE_CHECKING:
     from muster.generation.generator import Generator
     from muster.mission.model import Mission
 
 _FILE = click.Path(path_type=Path)
-_SUFFIXES = (".yaml", ".yml")
 
 
 class _Families(click.Group):
@@ -183,8 +183,7 @@ def _write(
         raise ParameterError(f"--count: {count} without -o; expected -o FOLDER")
     missions = generate(generator.name, count, seed, **values)
     if output is None:
-        from muster.mission.yaml_writer import yaml_text
-
+    
         click.echo(yaml_text(missions[0]), nl=False)
     else:
         for file in _written(missions, output):
@@ -208,7 +207,7 @@ def _written(missions: Sequence[Mission], output: Path) -> Iterator[Path]:
     for file, text in texts.items():
         if file.exists() and file.read_bytes() != text.encode():
             raise ParameterError(f"{file}: exists, with another content; expected the name of a new file")
-    if output.suffix not in _SUFFIXES:
+    if output.suffix not in YAML_SUFFIXES:
         output.mkdir(parents=True, exist_ok=True)
     for file, text in texts.items():
         write_text(file, text)
@@ -218,7 +217,7 @@ def _written(missions: Sequence[Mission], output: Path) -> Iterator[Path]:
 def _file(mission: Mission, output: Path, count: int) -> Path:
     if output.suffix == ".json":
         raise ParameterError(f"--output: {output}; expected a folder, or a file .yaml")
-    if output.suffix not in _SUFFIXES:
+    if output.suffix not in YAML_SUFFIXES:
         return output / f"{mission.name}.yaml"
     if count > 1:
         raise ParameterError(f"--output: {output}; expected a folder for {count} missions")

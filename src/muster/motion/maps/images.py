@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from muster.mission.errors import Finding, MissionError
 from muster.mission.values.arrays import Floats
+from muster.mission.yaml_writer import YAML_SUFFIXES
 
 _EXPECTED = "an image in PNG or PGM (P2 or P5)"
 _READ = {b"\x89PNG\r\n\x1a\n": "PNG", b"P2": "plain PGM", b"P5": "PGM"}
@@ -84,7 +85,7 @@ def _form(path: Path) -> str:
         raise _refusal(path, getattr(error, "strerror", None) or str(error), _EXPECTED) from None
     form = next((form for magic, form in _READ.items() if head.startswith(magic)), None)
     if form is None:
-        hint = "; for a map file of ROS the key is ros_yaml" if path.suffix in (".yaml", ".yml") else ""
+        hint = "; for a map file of ROS the key is ros_yaml" if path.suffix in YAML_SUFFIXES else ""
         raise _refusal(path, _described(head), _EXPECTED + hint)
     return form
 
