@@ -173,6 +173,22 @@ class TestQuick:
         found = touched.Touched({"tests/a/test_new.py"})
         assert quick.select(found, MAP, budget_s=9.0).tests == ["tests/a/test_new.py"]
 
+    @pytest.mark.parametrize(
+        ("codes", "runs", "code"), [([0], 1, 0), ([1], 1, 1), ([5, 0], 2, 0), ([5, 1], 2, 1), ([5, 5], 2, 0)]
+    )
+    def test_tests_with_services_run_where_no_other_test_is_fast(self, monkeypatch, capsys, codes, runs, code):
+        ran, left = [], list(codes)
+        monkeypatch.setattr(quick, "read_map", lambda: MAP)
+        monkeypatch.setattr(quick, "base_of_work", lambda: "HEAD")
+        monkeypatch.setattr(quick, "changed_files", lambda base: ["src/muster/a.py"])
+        monkeypatch.setattr(quick, "_run", lambda chosen, options: ran.append(chosen.tests) or left.pop(0))
+        monkeypatch.setattr("sys.argv", ["quick"])
+        assert quick.main() == code
+        assert len(ran) == runs
+        assert all("muster_control" not in test for test in ran[0])
+        assert ran[1:] in ([], [["tests/muster_control/cli/test_serve.py::test_page"]])
+        assert ("No fast test executes" in capsys.readouterr().out) == (codes == [5, 5])
+
 
 class TestCI:
     @pytest.fixture(autouse=True)
