@@ -183,7 +183,6 @@ def _write(
         raise ParameterError(f"--count: {count} without -o; expected -o FOLDER")
     missions = generate(generator.name, count, seed, **values)
     if output is None:
-    
         click.echo(yaml_text(missions[0]), nl=False)
     else:
         for file in _written(missions, output):
@@ -201,7 +200,6 @@ def _written(missions: Sequence[Mission], output: Path) -> Iterator[Path]:
         before any file is written, if one is there that is another.
     """
     from muster.mission.texts.text_files import write_text
-    from muster.mission.yaml_writer import yaml_text
 
     texts = {_file(mission, output, len(missions)): yaml_text(mission) for mission in missions}
     for file, text in texts.items():
