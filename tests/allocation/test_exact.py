@@ -108,7 +108,7 @@ def test_bound_exact_search(objective):
 
 
 def test_the_solver_rules_out_no_plan_that_is_the_best():
-    """In this mission OR-Tools 9.15 did after its presolve, in two of three runs."""
+    """After its presolve OR-Tools 9.15 rules out the best plan of this mission in two of three runs."""
     problem = Problem.compile(carried_mission(552))
     for seed in range(6):
         result = solve_exactly(problem, 30.0, seed=seed, judge=admits)

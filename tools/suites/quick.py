@@ -1,6 +1,6 @@
 """`make quick`: run the fast tests that executed what the change touches, most specific ones first, within a budget.
 
-Those that need a service (server, browser, ROS master, network) run where no other test is there.
+Tests that need a service (server, browser, ROS master, network) run only where no other fast test executes the change.
 
 `python -m tools.suites.quick [--base COMMIT] [--budget SECONDS] [--list] [PYTEST OPTION...]`. The change is what
 differs from the commit where the branch left `origin/main` (`--base` names another), files that git does not know yet
@@ -14,13 +14,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-import pytest
-
 from tools.suites.change import ROOT, base_of_work, changed_files
 from tools.suites.executed import Executed, TestMap, read_map
 from tools.suites.touched import SERVICES, Touched, touched
 
 _LIST = ROOT / "build" / "quick.txt"
+_NO_TESTS = 5  # the exit code of pytest where no test is left to run
 _NEW_S = 0.2  # CPU seconds that a test is taken for of which the map knows nothing
 
 
@@ -41,11 +40,10 @@ def select(found: Touched, tests: TestMap, budget_s: float, *, with_services: bo
     """
     named_files = {name for name in found.tests if "::" not in name}
     functions = {name for name in tests if name.partition("::")[0] in named_files} | (found.tests - named_files)
-    new_files = named_files - {name.partition("::")[0] for name in functions}
     services = {name for name in functions if name.startswith(SERVICES) and name.partition("::")[0] not in named_files}
-    if with_services:
-        functions, services, new_files = services, set[str](), set[str]()
-    ranked = sorted(functions - services, key=lambda name: _rank(name, tests[name], named_files))
+    new_files = set[str]() if with_services else named_files - {name.partition("::")[0] for name in functions}
+    wanted = services if with_services else functions - services
+    ranked = sorted(wanted, key=lambda name: _rank(name, tests[name], named_files))
     chosen, spent = sorted(new_files), _NEW_S * len(new_files)
     for name in ranked:
         if spent + tests[name].cpu_s <= budget_s:
@@ -75,13 +73,13 @@ def main() -> int:
     if asked.list:
         print("\n".join(chosen.tests))
         return 0
-    code: int = _run(chosen, options) if chosen.tests else pytest.ExitCode.NO_TESTS_COLLECTED
-    if code == pytest.ExitCode.NO_TESTS_COLLECTED and chosen.with_services:
+    code = _run(chosen, options) if chosen.tests else _NO_TESTS
+    if code == _NO_TESTS and chosen.with_services:
         chosen = select(found, tests, asked.budget, with_services=True)
         print(f"None of these is fast: {len(chosen.tests)} that need a service run, about {chosen.cpu_s:.0f} CPU s.")
         sys.stdout.flush()
         code = _run(chosen, options)
-    if code == pytest.ExitCode.NO_TESTS_COLLECTED:
+    if code == _NO_TESTS:
         print("No fast test executes what the change touches.")
         return 0
     return code

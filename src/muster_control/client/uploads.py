@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 
 from muster.mission.errors import ParameterError
 from muster.mission.model import Mission
-from muster.mission.yaml_writer import yaml_text
+from muster.mission.yaml_writer import YAML_SUFFIXES, yaml_text
 
 
 def packed_mission(mission: Mission) -> tuple[str, dict[str, bytes]]:
@@ -24,7 +24,7 @@ def packed_mission(mission: Mission) -> tuple[str, dict[str, bytes]]:
         if a file cannot be read.
     """
     file, names = Path(mission.source.file), _names(mission)
-    as_it_is = all(name == there for name, there in names.items()) and file.suffix.lower() in (".yaml", ".yml")
+    as_it_is = all(name == there for name, there in names.items()) and file.suffix.lower() in YAML_SUFFIXES
     text = file.read_text(encoding="utf-8-sig") if as_it_is else yaml_text(_moved(mission, names))
     files = {there: (file.parent / name).read_bytes() for name, there in names.items()}
     if mission.map is not None and mission.map.ros_yaml is not None:

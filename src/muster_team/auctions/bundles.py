@@ -19,7 +19,7 @@ from muster.allocation.auctions.consensus import Beliefs, Ledger
 from muster.allocation.auctions.consensus_bundle import Bidder, Parameters, ScoreClock, first_limit, layers
 from muster.allocation.stop import Stop
 from muster.model.problem import Problem
-from muster_team.auctions.valuation import Resolution, TeamValuer
+from muster_team.auctions.valuation import Resolution, TeamValuer, not_for_sale
 from muster_team.knowledge.messages import Bid, RoundBids, Sold
 
 
@@ -105,7 +105,7 @@ class BundleValuer(TeamValuer):
         is_for_sale = task not in self._closed and not any(task in route for route in self._routes)
         if is_for_sale and self.problem.may(robot, task) and not sold.others:
             return ""
-        return f"{sold.what} for {sold.winner}, which is not for sale"
+        return not_for_sale(sold.assignments)
 
     def award(self, sold: Sold) -> None:
         self._routes[self._robots[sold.robot]].append(self._tasks[sold.task])

@@ -64,9 +64,9 @@ class UnitSales:
     def may_bid(self, robot: int, task: int) -> bool:
         """Whether a robot can win the task of a unit in this round, or may ask for a place in it."""
         unit = self._problem.model.unit[task]
-        if unit not in self._for_sale() or not self._problem.may(robot, task):
-            return False
-        return not self._auction.is_alone(unit) or self.can_win([(robot, task)])
+        if self._auction.is_alone(unit):
+            return self.can_win([(robot, task)])
+        return unit in self._for_sale() and self._problem.may(robot, task)
 
     def can_win(self, pairs: Sequence[tuple[int, int]]) -> bool:
         """Whether robots can win the tasks of a unit in this round, each its own."""

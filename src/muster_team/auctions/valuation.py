@@ -245,15 +245,17 @@ class AuctionValuer(TeamValuer):
         return [self.problem.tasks[j].id for j in self.sales.routes[self._robots[robot]]]
 
     def bids_fault(self, said: RoundBids) -> str:
-        wrong, robot = self._no_such_task([task for task, _ in said.bids]), self._robots[said.robot]
-        refused = (task for task, _ in said.bids if not wrong and not self.sales.may_bid(robot, self._tasks[task]))
-        return wrong or next((_not_for_sale([(said.robot, task)]) for task in refused), "")
+        if wrong := self._no_such_task([task for task, _ in said.bids]):
+            return wrong
+        robot = self._robots[said.robot]
+        refused = (task for task, _ in said.bids if not self.sales.may_bid(robot, self._tasks[task]))
+        return next((not_for_sale([(said.robot, task)]) for task in refused), "")
 
     def sale_fault(self, sold: Sold) -> str:
         if wrong := self._no_such_task(list(dict.fromkeys(task for _, task in sold.assignments))):
             return wrong
         pairs = [(self._robots[robot], self._tasks[task]) for robot, task in sold.assignments]
-        return "" if self.sales.can_win(pairs) else _not_for_sale(sold.assignments)
+        return "" if self.sales.can_win(pairs) else not_for_sale(sold.assignments)
 
     def spans(self) -> Mapping[str, tuple[float, float]]:
         return self.sales.spans() if isinstance(self.sales, UnitSales) else {}
@@ -263,6 +265,6 @@ class AuctionValuer(TeamValuer):
             bid_of(problem, self.terms)
 
 
-def _not_for_sale(assignments: Sequence[tuple[str, str]]) -> str:
+def not_for_sale(assignments: Sequence[tuple[str, str]]) -> str:
     """Why robots cannot win these tasks now, each its own."""
     return ", ".join(f"{shown(task)} for {shown(robot)}" for robot, task in assignments) + ", which is not for sale"

@@ -127,8 +127,8 @@ class Circuits:
     def _rank_units(self) -> None:
         """Rule out deadlocks: a rank of each unit that grows along every leg and from every prerequisite.
 
-        Where there can be none it shows the solver at once that legs are no circuit, which sums of times or loads would
-        come to unit by unit.
+        Where no deadlock is possible, ranks still help: they rule out at once that tasks form a circuit without the
+        start. The times along such a circuit would grow a unit at a time, up to their limit.
         """
         problem, unit = self.problem, self.rules.unit
         last = len(self.tasks) - 1

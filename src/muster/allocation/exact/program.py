@@ -26,7 +26,7 @@ from muster.model.problem import Bools, Problem
 # After its presolve, whatever parts of it are left out, OR-Tools 9.15.6755 rules out the best plans of some programs,
 # and makes wrong proofs. A plan to begin with is near the best; what takes time is the proof.
 PROVING: Mapping[str, Any] = {"cp_model_presolve": False, "use_lns": False}
-_LEFT_OUT = ("core", "core_default_lp", "core_max_lp", "core_or_no_lp", "max_lp_core")  # raise bounds unit by unit
+_LEFT_OUT = "core"  # a search of the solver that raises the bound unit by unit
 
 _LOOK_S = 0.02  # between two looks whether the run is to end
 
@@ -175,7 +175,7 @@ class Program:
         solver.parameters.max_time_in_seconds = time_limit
         solver.parameters.random_seed = seed % 2**31
         solver.parameters.num_workers = workers
-        solver.parameters.ignore_subsolvers.extend(_LEFT_OUT)
+        solver.parameters.ignore_subsolvers.append(_LEFT_OUT)
         for name, setting in parameters.items():
             setattr(solver.parameters, name, setting)
         status = run_until(solver, self.model, interrupted)
